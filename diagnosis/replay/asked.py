@@ -26,9 +26,15 @@ LEAST = 0.02
 class AskedTorques:
     """Computes what servos ask for, by their declared law, in recorded motions."""
 
-    def __init__(self, traces: Sequence[Trace]) -> None:
-        """Take the commands, servos and motions of traces, which have all of them."""
-        self._traces = list(traces)
+    def __init__(
+        self, traces: Sequence[Trace], in_model: FloatArray | float = 0.0
+    ) -> None:
+        """Take the commands, servos and motions of traces, which have all of them.
+
+        `in_model` (j,) is the back-EMF [N m s/rad] that the model has as damping of its
+        joints.
+        """
+        self._traces, self._in_model = list(traces), in_model
 
     def of(self, needed_nm: FloatArray, variants: Variants) -> FloatArray:
         """(n, rows, j) torques that servos ask for where motions need (n, rows, j)."""
@@ -37,30 +43,31 @@ class AskedTorques:
             first = 0
             for trace in self._traces:
                 own = slice(first, first + trace.ticks)
-                asked[row, own] = _asked(trace, needed_nm[row, own], variants, row)
+                asked[row, own] = self._of(trace, needed_nm[row, own], variants, row)
                 first += trace.ticks
         return asked
 
-
-def _asked(
-    trace: Trace, needed_nm: FloatArray, variants: Variants, row: int
-) -> FloatArray:
-    """(T, j) torques by the declared law of servos that are a variant's."""
-    joints = {name: one[row] for name, one in vars(variants.joints).items()}
-    kp = trace.servo.kp_nm_rad
-    kd = trace.servo.kd_nm_s_rad + trace.servo.back_emf_nm_s_rad
-    assert trace.motion is not None
-    v, since_s = trace.motion.velocity_rad_s, trace.time_s[:, None]
-    off = (since_s >= joints["off_start_s"]) & (since_s < joints["off_end_s"])
-    on = 1 - joints["off_share"] * off
-    stiffness = joints["kp_factor"] * np.maximum(1 - joints["fade_1_s"] * since_s, 0)
-    damping = on * joints["damping_factor"]
-    pull = (needed_nm + damping * kd * v) / np.maximum(on * stiffness, LEAST)
-    asked = pull - kd * v
-    delay_s = float(variants.signals.command_delay_s[row])
-    if delay_s:
-        asked += kp * (centred(trace) - centred(trace, delay_s))
-    return np.asarray(asked)
+    def _of(
+        self, trace: Trace, needed_nm: FloatArray, variants: Variants, row: int
+    ) -> FloatArray:
+        """(T, j) torques by the declared law of servos that are a variant's."""
+        joints = {name: one[row] for name, one in vars(variants.joints).items()}
+        kp = trace.servo.kp_nm_rad
+        kd = trace.servo.kd_nm_s_rad + trace.servo.back_emf_nm_s_rad
+        assert trace.motion is not None
+        v, since_s = trace.motion.velocity_rad_s, trace.time_s[:, None]
+        off = (since_s >= joints["off_start_s"]) & (since_s < joints["off_end_s"])
+        on = 1 - joints["off_share"] * off
+        stiffness = joints["kp_factor"] * np.maximum(
+            1 - joints["fade_1_s"] * since_s, 0
+        )
+        damping = on * joints["damping_factor"] * kd - self._in_model
+        pull = (needed_nm + damping * v) / np.maximum(on * stiffness, LEAST)
+        asked = pull - (kd - self._in_model) * v
+        delay_s = float(variants.signals.command_delay_s[row])
+        if delay_s:
+            asked += kp * (centred(trace) - centred(trace, delay_s))
+        return np.asarray(asked)
 
 
 def centred(trace: Trace, delay_s: float = 0.0) -> FloatArray:
@@ -93,11 +100,16 @@ def _led(trace: Trace) -> tuple[FloatArray, FloatArray]:
     return time_s, np.concatenate([before.command_rad, trace.command_rad])
 
 
-def by_servos(trace: Trace) -> FloatArray:
-    """(T, j) torques [N m] that the declared servos ask for at the measured motion."""
+def by_servos(trace: Trace, in_model: FloatArray | float = 0.0) -> FloatArray:
+    """(T, j) torques [N m] that the declared servos ask for at the measured motion.
+
+    Of their back-EMF only what the model does not have as damping of its joints counts:
+    `in_model` (j,) [N m s/rad], which the torque that a motion needs holds already.
+    """
     kp, kd = trace.servo.kp_nm_rad, trace.servo.kd_nm_s_rad
     q = trace.position_rad
     v = np.stack([np.gradient(one, trace.time_s) for one in q.T], axis=1)
     pull = kp * (centred(trace) - q) - kd * v
     limit = trace.servo.max_torque_nm
-    return np.asarray(np.clip(pull, -limit, limit) - trace.servo.back_emf_nm_s_rad * v)
+    back_emf = trace.servo.back_emf_nm_s_rad - in_model
+    return np.asarray(np.clip(pull, -limit, limit) - back_emf * v)

@@ -224,6 +224,7 @@ def _needed(
     not of the torque that they need.
     """
     needed, law = [], []
+    in_model = plant.servo.back_emf_nm_s_rad
     for trace in traces:
         assert trace.motion is not None
         own = tuple(one for one in model if one.recording in (None, trace.recording))
@@ -232,9 +233,8 @@ def _needed(
         torques = NeededTorques(plant, [trace]).of(variants)
         changed = torques[-1] - torques[0]
         if own and trace.command_rad is not None:
-            asked = AskedTorques([trace]).of(torques, variants)
+            asked = AskedTorques([trace], in_model).of(torques, variants)
             changed = np.where(by_servo, asked[-1] - asked[0], changed)
-        emf = plant.servo.back_emf_nm_s_rad * trace.motion.velocity_rad_s
-        needed.append(torques[0] - emf)
+        needed.append(torques[0] - in_model * trace.motion.velocity_rad_s)
         law.append(_below(trace.time_s, changed, highest_hz) if own else changed)
     return np.concatenate(needed), np.concatenate(law)

@@ -68,7 +68,7 @@ def asked_motions(plant: Plant, traces: Sequence[Trace]) -> tuple[Trace, ...]:
     """
     if plant.base == "floating" or not all(map(_is_asked, traces)):
         return ()
-    torques = [_with_asked(one) for one in traces]
+    torques = [_with_asked(one, plant) for one in traces]
     return tuple(
         replace(one, motion=replace(one.motion, by_servo=True))
         for one in with_motions(plant, torques, LASTS_S)
@@ -76,10 +76,11 @@ def asked_motions(plant: Plant, traces: Sequence[Trace]) -> tuple[Trace, ...]:
     )
 
 
-def _with_asked(trace: Trace) -> Trace:
+def _with_asked(trace: Trace, plant: Plant) -> Trace:
     """A trace, and the rows before it, with the torques that its servos ask for."""
-    before = None if trace.before is None else _with_asked(trace.before)
-    return replace(trace, torque_nm=by_servos(trace), before=before)
+    before = None if trace.before is None else _with_asked(trace.before, plant)
+    asked_nm = by_servos(trace, plant.servo.back_emf_nm_s_rad)
+    return replace(trace, torque_nm=asked_nm, before=before)
 
 
 def times_noise(plant: Plant, healthy: Sequence[Trace]) -> float:

@@ -46,7 +46,8 @@ class TorquePredictor(Predictor):
         """
         plant, traces = self.plant, self.traces
         self._needed = NeededTorques(plant, traces)
-        self._asked = AskedTorques(traces) if asked(traces) else None
+        in_model = plant.servo.back_emf_nm_s_rad
+        self._asked = AskedTorques(traces, in_model) if asked(traces) else None
         motions = [trace.motion for trace in traces if trace.motion is not None]
         measured = [measured_of(trace, self.channels) for trace in traces]
         self._measured = np.concatenate(measured)
