@@ -1,7 +1,6 @@
 """`groundwalk convert`: recordings from files that robots and other programs write."""
 
 import os
-import sys
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from itertools import chain
@@ -13,6 +12,7 @@ import tyro
 from experiments.command_line import run_verb
 from experiments.reports.tables import print_table
 from experiments.runs.folder import check_new
+from experiments.runs.servo_options import servo_gains
 from groundwalk.errors import (
     BadRecordingError,
     BadValueError,
@@ -115,8 +115,6 @@ class Convert:
             raise BadValueError(
                 f"out is {self.out}; give a .parquet, a .csv or a folder"
             )
-        if self.kp is None and (self.kd, self.max_torque) != (None, None):
-            raise BadValueError("kd or max_torque is given without kp")
         kinds = {kind_of(source) for source in self.sources}
         for option, meant_for in FOR_KINDS.items():
             given = (
@@ -137,10 +135,7 @@ class Convert:
     @property
     def gains(self) -> ServoGains | None:
         """The gains of all servos; None if they are not given."""
-        if self.kp is None:
-            return None
-        limit = sys.float_info.max if self.max_torque is None else self.max_torque
-        return ServoGains(self.kp, self.kd or 0.0, limit)
+        return servo_gains(self.kp, self.kd, self.max_torque)
 
     @property
     def new_names(self) -> dict[str, str]:

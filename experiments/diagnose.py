@@ -3,7 +3,6 @@
 import io
 import json
 import shutil
-import sys
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -48,6 +47,7 @@ from experiments.runs.folder import (
 )
 from experiments.runs.options import RunOptions, check_at_least
 from experiments.runs.progress import Stages
+from experiments.runs.servo_options import servo_gains
 from groundwalk.errors import BadRecordingError, BadValueError, GroundwalkError
 from groundwalk.files import write_bytes
 from worlds import ServoGains
@@ -111,12 +111,7 @@ class Diagnose(RunOptions):
             raise BadValueError("no robot is given; give one with --robot")
         if self.reference_robot and not self.reference:
             raise BadValueError("reference_robot is given without a reference")
-        for name in ("kp", "kd", "max_torque"):
-            value = getattr(self, name)
-            if value is not None and not 0 <= value < np.inf:
-                raise BadValueError(f"{name} is {value}; it must not be negative")
-        if self.kp is None and (self.kd, self.max_torque) != (None, None):
-            raise BadValueError("kd or max_torque is given without kp")
+        _ = self.gains  # wrong values are refused
         if not 0 <= self.least_share < 1:
             raise BadValueError(
                 f"least_share is {self.least_share}; it must be at least 0, below 1"
@@ -126,10 +121,7 @@ class Diagnose(RunOptions):
     @property
     def gains(self) -> ServoGains | None:
         """The servo gains given by --kp, --kd and --max-torque; None without them."""
-        if self.kp is None:
-            return None
-        limit = sys.float_info.max if self.max_torque is None else self.max_torque
-        return ServoGains(self.kp, self.kd or 0.0, limit)
+        return servo_gains(self.kp, self.kd, self.max_torque)
 
 
 def main(config: Diagnose) -> None:

@@ -133,6 +133,11 @@ def predict_recordings(config: Predict) -> tuple[RunFolder, PredictionResult]:
 def _check_compared(run: DiagnosisRun, channels: list[str]) -> None:
     """Refuse recordings in which other quantities are compared than in the run."""
     by_torque = all(name.startswith("torque.") for name in channels)
+    if run.compares_torques and not by_torque and run.options.get("reference"):
+        raise BadRecordingError(
+            "the diagnosis compared torques by what its reference taught, which its "
+            "run does not keep: such a diagnosis cannot be checked on new recordings"
+        )
     if run.compares_torques not in (None, by_torque):
         ours, theirs = ("torques", "motions") if by_torque else ("motions", "torques")
         raise BadRecordingError(

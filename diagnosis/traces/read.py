@@ -21,7 +21,7 @@ from worlds.recordings.recording import Recording, nearest
 
 
 def read_traces(
-    paths: Sequence[Path], source: str | Path, servo: Gains | None = None
+    paths: Sequence[str | Path], source: str | Path, servo: Gains | None = None
 ) -> tuple[Plant, list[Trace]]:
     """Read recordings of one robot and make its nominal model.
 
@@ -37,14 +37,14 @@ def read_traces(
       BadModelError: the robot's file is no model.
 
     Example:
-      >>> plant, traces = read_traces([Path("air.parquet")], "nao")
+      >>> plant, traces = read_traces(["air.parquet"], "nao")
       >>> plant.joints[:2], traces[0].position_rad.shape
     """
-    paths = recording_files(paths)
-    if not paths:
+    files = recording_files(paths)
+    if not files:
         raise BadRecordingError("no recordings are given")
-    recordings = [read_recording(path) for path in paths]
-    _check_alike(paths, recordings)
+    recordings = [read_recording(path) for path in files]
+    _check_alike(files, recordings)
     gains = [_gains(recording, servo) for recording in recordings]
     first = recordings[0]
     base: Base = "floating" if first.metadata.base == "floating" else "fixed"
@@ -54,13 +54,16 @@ def read_traces(
             trace_of(recording, plant, name),
             servo=with_gains(plant.servo, plant.joints, own),
         )
-        for recording, name, own in zip(recordings, _names(paths), gains, strict=True)
+        for recording, name, own in zip(recordings, _names(files), gains, strict=True)
     ]
     return plant, traces
 
 
 def read_reference(
-    paths: Sequence[Path], source: str | Path, plant: Plant, servo: Gains | None = None
+    paths: Sequence[str | Path],
+    source: str | Path,
+    plant: Plant,
+    servo: Gains | None = None,
 ) -> Reference | None:
     """Read reference recordings: those of the same robot while it was healthy.
 
@@ -97,10 +100,10 @@ def read_reference(
     return Reference(own, traces)
 
 
-def recording_files(paths: Sequence[Path]) -> list[Path]:
+def recording_files(paths: Sequence[str | Path]) -> list[Path]:
     """Paths of recordings, in which each folder is replaced by the recordings in it."""
     found = []
-    for path in paths:
+    for path in map(Path, paths):
         inside = sorted(
             one for one in path.glob("*") if one.suffix.lower() in (".csv", ".parquet")
         )

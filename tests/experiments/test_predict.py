@@ -6,6 +6,7 @@ The other engine (PyBullet) makes the recordings, with friction that it has by i
 import json
 import shutil
 from functools import partial
+from types import SimpleNamespace
 
 import pytest
 from copied_processes import groundwalk
@@ -13,12 +14,12 @@ from made_once import made_once
 
 from diagnosis import Rules
 from experiments.diagnose import Diagnose, run_diagnosis
-from experiments.predict import Predict, main, predict_recordings
+from experiments.predict import Predict, _check_compared, main, predict_recordings
 from experiments.prediction.page import rows_of
 from experiments.prediction.result import PredictionResult
 from experiments.record import Record
 from experiments.record import main as record
-from groundwalk.errors import BadValueError, GroundwalkError
+from groundwalk.errors import BadRecordingError, BadValueError, GroundwalkError
 from worlds import read_recording
 from worlds.recordings.files import write_recording
 
@@ -173,3 +174,23 @@ def test_on_the_command_line_bad_input_has_the_status_2(made, tmp_path):
     assert printed.startswith("groundwalk: all of these recordings were used")
     assert len(printed.splitlines()) == 1
     assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize(
+    ("torques", "reference", "channel", "said"),
+    [
+        (True, ("healthy.csv",), "position.elbow", "reference taught"),
+        (True, (), "position.elbow", "in these recordings only motions"),
+        (False, (), "torque.elbow", "in these recordings only torques"),
+        (False, ("healthy.csv",), "position.elbow", ""),
+        (True, (), "torque.elbow", ""),
+        (None, (), "torque.elbow", ""),  # nothing was held out
+    ],
+)
+def test_the_same_quantities_must_be_compared(torques, reference, channel, said):
+    run = SimpleNamespace(compares_torques=torques, options={"reference": reference})
+    if not said:
+        _check_compared(run, [channel])
+        return
+    with pytest.raises(BadRecordingError, match=said):
+        _check_compared(run, [channel])

@@ -39,7 +39,7 @@ class LeRobotOptions:
 
 @dataclass(frozen=True)
 class _Info:
-    """Of meta/info.json what is needed here."""
+    """What is needed of a data set's meta/info.json."""
 
     joints: tuple[str, ...]
     robot: str

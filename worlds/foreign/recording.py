@@ -45,7 +45,7 @@ class ForeignRecording:
         return joints_with(POSITION, self.columns)
 
     def renamed(self, new_names: Mapping[str, str]) -> "ForeignRecording":
-        """The same with other names of joints; those that are not named stay.
+        """A copy with other names of joints; those that are not named stay.
 
         A name may have one `*`, which stands for the same text in the old and the new
         name, as in {"fer_*": "panda_*"}.
@@ -69,7 +69,7 @@ class ForeignRecording:
         return self._with_joints(names)
 
     def numbered(self, names: Sequence[str]) -> "ForeignRecording":
-        """The same with these names of joints, given in the order of the joints.
+        """A copy with these names of joints, given in the order of the joints.
 
         Raises:
           ForeignFileError: there are more or fewer joints than names.
@@ -84,7 +84,7 @@ class ForeignRecording:
         return self._with_joints(dict(zip(self.joints, names, strict=True)))
 
     def without(self, joints: Sequence[str]) -> "ForeignRecording":
-        """The same without some joints.
+        """A copy without some joints.
 
         Raises:
           ForeignFileError: one of them is not there, or none would be left.
@@ -117,7 +117,7 @@ class ForeignRecording:
         )
 
     def _with_joints(self, names: Mapping[str, str]) -> "ForeignRecording":
-        """The same with the joints in `names` alone, called by its values."""
+        """A copy with the joints in `names` alone, called by its values."""
         columns = {}
         for name, values in self.columns.items():
             quantity, _, joint = name.partition(".")

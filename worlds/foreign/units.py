@@ -16,13 +16,13 @@ ANGLES = {
     "m": 1.0,
     "mm": 1e-3,
 }
-"""Of angles, and of the ways of sliding joints."""
+"""Units of angles, and of the ways of sliding joints."""
 RATES = {
     **{f"{unit}/s": factor for unit, factor in ANGLES.items()},
     "rpm": 2.0 * math.pi / 60.0,
 }
 TORQUES = {"Nm": 1.0, "mNm": 1e-3, "kgcm": 0.0980665, "N": 1.0}
-"""Of torques, and of the forces of sliding joints."""
+"""Units of torques, and of the forces of sliding joints."""
 
 _OTHER_WRITINGS = {
     "sec": "s", "secs": "s", "second": "s", "seconds": "s",

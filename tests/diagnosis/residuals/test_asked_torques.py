@@ -47,7 +47,7 @@ def test_back_emf_counts_once(more):
 
 @pytest.mark.parametrize("name", ["servo_gain", "servo_damping"])
 def test_a_servo_that_is_not_as_declared_asks_for_other_torques(name):
-    """Its error is what its true gains need: factor KP e = what holds, less damping."""
+    """The error is what true gains need: factor KP e = torque needed, and damping."""
     plant, factor = plant_of(PENDULUM, kp=KP, emf=EMF), 0.7
     time_s = ticks(8.0)
     angle, speed = 0.4 * np.sin(3 * time_s), 1.2 * np.cos(3 * time_s)

@@ -57,6 +57,12 @@ def test_a_folder_stands_for_its_recordings(write, tmp_path):
         read_traces([tmp_path / "empty"], tmp_path / "arm.xml")
 
 
+def test_paths_may_be_texts(write, tmp_path):
+    path, arm = write("a"), tmp_path / "arm.xml"
+    texts, paths = (read_traces([one], arm)[1] for one in (str(path), path))
+    assert [one.name for one in texts] == [one.name for one in paths]
+
+
 def test_each_recording_has_its_own_servo(write, tmp_path):
     paths = [
         write("a", servo={"one": ServoGains(7.0, 0.5, 2.0)}),
