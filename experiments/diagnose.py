@@ -3,8 +3,9 @@
 import io
 import json
 import shutil
+import sys
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -47,6 +48,7 @@ from experiments.runs.folder import (
 )
 from experiments.runs.options import RunOptions, check_at_least
 from experiments.runs.progress import Stages
+from experiments.runs.robot_model import model_note, robot_model
 from experiments.runs.servo_options import servo_gains
 from groundwalk.errors import BadRecordingError, BadValueError, GroundwalkError
 from groundwalk.files import write_bytes
@@ -72,7 +74,7 @@ class Diagnose(RunOptions):
       reference_robot: model of the robot as it was then, if it has another tool or
         another model now; in the form of `robot`.
       robot: name of a robot, a model file (.xml or .urdf), or a robot of
-        example-robot-data.
+        example-robot-data; by default the model that the recordings state.
       kp: stiffness of all servos [N m/rad], for recordings that do not state it.
       kd: damping of all servos [N m s/rad], for recordings that do not state it.
       max_torque: torque limit of all servos [N m], for recordings that do not state it;
@@ -107,8 +109,6 @@ class Diagnose(RunOptions):
         super().__post_init__()
         if self.resume is None and not self.recordings:
             raise BadValueError("no recording is given; give one at least")
-        if self.resume is None and not self.robot:
-            raise BadValueError("no robot is given; give one with --robot")
         if self.reference_robot and not self.reference:
             raise BadValueError("reference_robot is given without a reference")
         _ = self.gains  # wrong values are refused
@@ -141,7 +141,7 @@ def main(config: Diagnose) -> None:
 
 def print_audit(config: Diagnose) -> None:
     """Print the check of the recordings with which a diagnosis begins."""
-    plant, traces, reference = _read(config)
+    plant, traces, reference = _read(_with_robot(config))
     healthy = reference.traces if reference else ()
     found = audit([*traces, *healthy], plant, healthy)
     if config.json:
@@ -170,6 +170,7 @@ def run_diagnosis(config: Diagnose) -> tuple[RunFolder, Verdict]:
     """
     check_free(config.out)
     # recordings that cannot be read are refused before a folder is made
+    config = _with_robot(config)
     read = None if config.resume else _read(config)
     folder, config = open_run(VERB, config)
     checkpoint = CheckpointFiles(folder.path / STAGES)
@@ -183,6 +184,20 @@ def run_diagnosis(config: Diagnose) -> tuple[RunFolder, Verdict]:
         _write(config, folder, found, read[1], stages.advance)
     checkpoint.delete()
     return folder, found.verdict
+
+
+def _with_robot(config: Diagnose) -> Diagnose:
+    """The options with the model to use; says if it is another than recordings state.
+
+    A resumed run has its own model.
+    """
+    if config.resume is not None:
+        return config
+    robot = robot_model(config.recordings, config.robot)
+    note = model_note(config.recordings, robot)
+    if note:
+        print(f"note: {note}", file=sys.stderr)
+    return replace(config, robot=robot)
 
 
 Read = tuple[Plant, list[Trace], Reference | None]

@@ -44,7 +44,7 @@ class Record:
     Attributes:
       out: the file to write, .parquet or .csv.
       robot: pendulum, so101, or a robot of `groundwalk list robots`.
-      world: sim is MuJoCo, real is PyBullet.
+      world: sim is MuJoCo, real is PyBullet; a robot in the air moves alike in both.
       motion: the motion of the robot.
       base: fixed or floating; by default the one that the motion needs.
       hidden: physics that the model lacks, such as backlash@LKneePitch:gap=0.02 or
@@ -95,11 +95,23 @@ class Record:
         """The robot, its base floating if the motion is on feet, otherwise fixed."""
         return hidden_plant(self.robot, floating=self.on_feet)
 
+    @property
+    def model_file(self) -> Path:
+        """The file of the robot's nominal model, beside `out`.
+
+        It is written unless the robot is one of `groundwalk list robots`.
+        """
+        file = self.plant().file
+        return self.out.with_name(f"{self.out.stem}.{file[0]}") if file else self.out
+
 
 def main(config: Record) -> None:
     """Make the recording, and print the file's name."""
     recording = make_recording(config)
-    print(f"wrote {config.out}: {recording.ticks} ticks of {config.plant().name}")
+    plant = config.plant()
+    print(f"wrote {config.out}: {recording.ticks} ticks of {plant.name}")
+    if plant.file is not None:
+        print(f"its model is {config.model_file}, which the recording states")
 
 
 def make_recording(config: Record) -> Recording:
@@ -136,12 +148,10 @@ def make_recording(config: Record) -> Recording:
         raise GroundwalkError(
             "no recording: the robot fell, or its simulation diverged"
         )
-    model = config.robot
     if plant.file is not None:
-        model = f"{config.out.stem}.{plant.file[0]}"
-        write_text(config.out.with_name(model), plant.file[1])
+        write_text(config.model_file, plant.file[1])
     metadata = RecordingMetadata(
-        robot=model,
+        robot=config.robot if plant.file is None else config.model_file.name,
         base="floating" if plant.floating else "fixed",
         source=f"groundwalk record: {config.motion}, seed {config.seed}",
         servo=plant.servo,

@@ -18,6 +18,7 @@ from groundwalk.errors import (
 )
 from terrain import Heightfield, TerrainSpec
 from worlds import Recording, RecordingMetadata, read_recording
+from worlds.recordings.stated_model import stated_model
 from worlds.scenes.mechanism import mechanism
 from worlds.scenes.scene import Scene
 
@@ -57,11 +58,9 @@ def read_run(folder: Path) -> dict[str, Recording]:
 def read_with_model(path: Path) -> Recording:
     """Read a recording; its model file may also be in the folder of the recording."""
     recording = read_recording(path)
-    model = path.parent / recording.metadata.robot
-    named = Path(recording.metadata.robot)
-    if not model.suffix or named.exists() or not model.is_file():
-        return recording
-    metadata = dataclasses.replace(recording.metadata, robot=str(model))
+    metadata = dataclasses.replace(
+        recording.metadata, robot=stated_model(path, recording)
+    )
     return dataclasses.replace(recording, metadata=metadata)
 
 

@@ -213,7 +213,6 @@ def test_a_recording_of_another_robot_is_refused_and_nothing_is_written(
     ("change", "said"),
     [
         ({"recordings": ()}, "no recording"),
-        ({"robot": ""}, "no robot"),
         ({"kp": -1.0}, "kp must be a number from 0 up, not -1.0"),
         ({"kp": 8.0, "kd": float("inf")}, "kd must be"),
         ({"kp": 8.0, "max_torque": 0.0}, "above 0"),

@@ -155,8 +155,7 @@ JOURNEYS: dict[str, dict[str, Step]] = {
         "coulomb_friction@elbow_flex:torque=0.1 --out b.parquet": Run(
             "--duration 4", writes=("b.parquet",)
         ),
-        "groundwalk diagnose a.parquet b.parquet --robot a.nominal.urdf "
-        "--out runs/elbow": Run(
+        "groundwalk diagnose a.parquet b.parquet --out runs/elbow": Run(
             writes=below("runs/elbow", (*DIAGNOSED, "corrected.xml", "corrected.json")),
             says="elbow_flex",
         ),

@@ -42,7 +42,7 @@ def test_an_arm_with_meshes_as_mjcf(tmp_path):
     write_csv(tmp_path / "sway.csv", "two.xml", model, 3, 5.0, {"elbow": 0.4})
     writes = below("runs/two", (*DIAGNOSED, "corrected.xml", "corrected.json"))
     step = Run(writes=writes, says="elbow")
-    take(tmp_path, "groundwalk diagnose sway.csv --robot two.xml --out runs/two", step)
+    take(tmp_path, "groundwalk diagnose sway.csv --out runs/two", step)
     assert found_in(tmp_path / "runs" / "two") == [("coulomb_friction", "elbow")]
     corrected = tmp_path / "runs" / "two" / "corrected.xml"
     assert mujoco.MjModel.from_xml_path(str(corrected)).dof_frictionloss[1] > 0.2
