@@ -3,7 +3,7 @@ import numpy as np
 import pytest
 
 from groundwalk.errors import BadValueError, UnknownNameError
-from robots.engine_models.mjcf import quiet_mujoco, scale_mass
+from robots.engine_models.mjcf import scale_mass
 
 ARM = """
 <mujoco>
@@ -61,30 +61,3 @@ def test_bad_values_are_refused():
         scale_mass(*arm(), 0, ())
     with pytest.raises(UnknownNameError, match="did you mean 'lower'"):
         scale_mass(*arm(), 2, ("lowr",))
-
-
-@pytest.fixture
-def logging_to_file():
-    """MuJoCo's own default, which `quiet_mujoco` switches off."""
-    log = mujoco.MjLogConfig.get()
-    before = log.logto_file
-    log.logto_file = True
-    log.set()
-    yield
-    log.logto_file = before
-    log.set()
-
-
-@pytest.mark.usefixtures("logging_to_file")
-def test_mujoco_logs_into_no_file_once_it_is_quiet(tmp_path, monkeypatch, capfd):
-    monkeypatch.chdir(tmp_path)
-    old = ARM.replace("<worldbody>", '<compiler settotalmass="3"/><worldbody>')
-    old = old.format(upper=2, lower=1)
-    mujoco.MjModel.from_xml_string(old)
-    assert [path.name for path in tmp_path.iterdir()] == ["MUJOCO_LOG.TXT"]
-    (tmp_path / "MUJOCO_LOG.TXT").unlink()
-    capfd.readouterr()
-    quiet_mujoco()
-    mujoco.MjModel.from_xml_string(old)
-    assert list(tmp_path.iterdir()) == []
-    assert capfd.readouterr() == ("", "")
