@@ -64,6 +64,8 @@ class Convert:
       joints: names of joints that the source only numbers, in their order.
       without: joints that are left out.
       base: how the robot's base is held.
+      servo: type of all servos, supply and position gain, such as sts3215@7.4V,P=16;
+        `groundwalk list servos` shows the types.
       kp: stiffness of all servos [N m/rad].
       kd: damping of all servos [N m s/rad].
       max_torque: torque limit of all servos [N m].
@@ -92,6 +94,7 @@ class Convert:
     joints: Words = ()
     without: Words = ()
     base: Literal["fixed", "floating"] = "fixed"
+    servo: str = ""
     kp: float | None = None
     kd: float | None = None
     max_torque: float | None = None
@@ -135,7 +138,7 @@ class Convert:
     @property
     def gains(self) -> ServoGains | None:
         """The gains of all servos; None if they are not given."""
-        return servo_gains(self.kp, self.kd, self.max_torque)
+        return servo_gains(self.kp, self.kd, self.max_torque, self.servo)
 
     @property
     def new_names(self) -> dict[str, str]:

@@ -75,6 +75,8 @@ class Diagnose(RunOptions):
         another model now; in the form of `robot`.
       robot: name of a robot, a model file (.xml or .urdf), or a robot of
         example-robot-data; by default the model that the recordings state.
+      servo: type of all servos, supply and position gain, such as sts3215@7.4V,P=16,
+        for recordings that do not state it; `groundwalk list servos` shows the types.
       kp: stiffness of all servos [N m/rad], for recordings that do not state it.
       kd: damping of all servos [N m s/rad], for recordings that do not state it.
       max_torque: torque limit of all servos [N m], for recordings that do not state it;
@@ -96,6 +98,7 @@ class Diagnose(RunOptions):
     robot: str = ""
     reference: Annotated[tuple[Path, ...], tyro.conf.arg(metavar="RECORDING...")] = ()
     reference_robot: str = ""
+    servo: str = ""
     kp: float | None = None
     kd: float | None = None
     max_torque: float | None = None
@@ -120,8 +123,8 @@ class Diagnose(RunOptions):
 
     @property
     def gains(self) -> ServoGains | None:
-        """The servo gains given by --kp, --kd and --max-torque; None without them."""
-        return servo_gains(self.kp, self.kd, self.max_torque)
+        """The gains that --servo, or --kp, --kd and --max-torque, give; or None."""
+        return servo_gains(self.kp, self.kd, self.max_torque, self.servo)
 
 
 def main(config: Diagnose) -> None:

@@ -1,4 +1,4 @@
-"""`groundwalk list`: the known robots, terrains, gaits and hidden effects."""
+"""`groundwalk list`: the known robots, servos, terrains, gaits and hidden effects."""
 
 import dataclasses
 from dataclasses import dataclass
@@ -10,6 +10,7 @@ import robots
 from experiments.command_line import run_verb
 from experiments.reports.tables import print_table
 from groundwalk.errors import UnknownNameError
+from robots.servos.types import servo_of, servo_types
 from terrain.catalog import FAMILIES
 from terrain.ground import Ground, Parameter
 from walk_engine import PARAMETERS, gaits
@@ -79,17 +80,31 @@ def effect_table() -> Table:
     return ["effect", "where, with", "unit", "values", "what it is"], rows
 
 
+def servo_table() -> Table:
+    """Table of the known servos at their usual supply and position gain."""
+    headings = ["servo", "stiffness [N m/rad]", "torque limit [N m]", "source"]
+    rows = []
+    for name, variants in servo_types().items():
+        for one in variants:
+            text = f"{name}@{one.usual_volts:g}V,P={one.usual_p:g}"
+            servo = servo_of(text)
+            torque = f"{servo.max_torque_nm:.3g}"
+            rows.append([text, f"{servo.kp_nm_rad:.3g}", torque, one.source])
+    return headings, rows
+
+
 TABLES = {
     "robots": robot_table,
     "terrains": terrain_table,
     "gaits": gait_table,
     "effects": effect_table,
+    "servos": servo_table,
 }
 
 
 @dataclass(frozen=True)
 class List:
-    """List the known robots, terrains, gaits or hidden effects.
+    """List the known robots, servos, terrains, gaits or hidden effects.
 
     A terrain is given as its name, or with parameters as in
     lumps:amplitude_m=0.012,x_range_m=-1:8; a gait as its name or as a JSON file; a
@@ -97,7 +112,7 @@ class List:
     backlash@LKneePitch:gap=0.02. Places other than joint and body need not be given.
 
     Attributes:
-      kind: robots, terrains, gaits or effects.
+      kind: robots, servos, terrains, gaits or effects.
     """
 
     kind: Annotated[str, tyro.conf.Positional, tyro.conf.arg(metavar="KIND")]

@@ -30,7 +30,7 @@ from experiments.runs.progress import Stages
 from groundwalk.errors import BadRecordingError, BadValueError
 
 VERB = "predict"
-_GAINS = ("kp", "kd", "max_torque")
+_GAINS = ("servo", "kp", "kd", "max_torque")
 
 
 @dataclass(frozen=True)
@@ -41,8 +41,9 @@ class Predict:
       run: folder of a run of `groundwalk diagnose` that has found effects.
       recordings: new recordings of the same robot (Parquet or CSV), or folders of them.
       robot: the robot's model, if its file is no longer where it was in the run.
-      kp: stiffness of all servos [N m/rad], for recordings that do not state it; by
-        default that of the run, as are the next two.
+      servo: type of all servos, such as sts3215@7.4V,P=16, for recordings that do not
+        state their gains; by default that of the run, as are the next three.
+      kp: stiffness of all servos [N m/rad], for recordings that do not state it.
       kd: damping of all servos [N m s/rad], for recordings that do not state it.
       max_torque: torque limit of all servos [N m], for recordings that do not state it.
       drive: what moves the model's joints where both commands and torques were
@@ -61,6 +62,7 @@ class Predict:
         tuple[Path, ...], tyro.conf.Positional, tyro.conf.arg(metavar="RECORDING...")
     ] = ()
     robot: str = ""
+    servo: str = ""
     kp: float | None = None
     kd: float | None = None
     max_torque: float | None = None
@@ -81,8 +83,8 @@ class Predict:
     def as_in(self, run: DiagnosisRun) -> Diagnose:
         """The options of the run, with its recordings replaced by the new ones."""
         given = {name: getattr(self, name) for name in _GAINS}
-        if set(given.values()) == {None}:
-            given = {name: run.options.get(name) for name in _GAINS}
+        if set(given.values()) == {None, ""}:
+            given = {name: run.options[name] for name in _GAINS if name in run.options}
         drive = self.drive or run.options.get("drive", "servos")
         robot = run.robot(self.robot)
         return Diagnose(self.recordings, robot, drive=drive, **given)

@@ -12,6 +12,7 @@ from diagnosis.plant.plant import ROOT, Base, ModelOptions, Plant
 from diagnosis.plant.servo import (
     Gains,
     Servo,
+    add_rotors,
     add_servos,
     described_servo,
     model_servo,
@@ -48,7 +49,8 @@ def load_plant(
         of example-robot-data, such as "so101".
       base: "fixed" to the world or "floating".
       joints: joints that the recordings have; None for all hinges and slides.
-      servo: servo gains that replace the model's own.
+      servo: servo gains that replace the model's own, and rotor inertias for joints
+        whose model has none.
 
     Raises:
       UnknownNameError: no robot has this name, or `servo` names an unknown joint.
@@ -73,6 +75,7 @@ def load_plant(
         own_step_s, flags = spec.option.timestep, int(spec.option.disableflags)
         options = ModelOptions(own_step_s, int(spec.option.integrator), flags)
     _equip(spec, base, ours, own)
+    add_rotors(spec, ours, servo)
     model = _compiled(spec, name)
     if description is not None:
         feet = _described_feet(description)

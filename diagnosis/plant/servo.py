@@ -123,9 +123,9 @@ def model_servo(model: mujoco.MjModel, joints: Sequence[str]) -> Servo:
 def with_gains(servo: Servo, joints: Sequence[str], gains: Gains | None) -> Servo:
     """Replace the servo gains of some or all joints.
 
-    New gains have only one damping. At a joint whose servo has back-EMF it replaces the
-    back-EMF, at others the damping inside the torque limit. The largest float as
-    `max_torque` stands for no limit. None changes nothing.
+    Gains without back-EMF have only one damping. At a joint whose servo has back-EMF it
+    replaces the back-EMF, at others the damping inside the torque limit. The largest
+    float as `max_torque` stands for no limit. None changes nothing.
 
     Raises:
       UnknownNameError: there are gains for a joint that does not exist.
@@ -139,12 +139,23 @@ def with_gains(servo: Servo, joints: Sequence[str], gains: Gains | None) -> Serv
         if name not in joints:
             raise UnknownNameError("joint with servo gains", name, joints)
         column = list(joints).index(name)
-        is_emf = servo.back_emf_nm_s_rad[column] > 0
+        is_emf = servo.back_emf_nm_s_rad[column] > 0 and given.back_emf == 0
         values["kp_nm_rad"][column] = given.kp
         values["back_emf_nm_s_rad" if is_emf else "kd_nm_s_rad"][column] = given.kd
+        if given.back_emf > 0:
+            values["back_emf_nm_s_rad"][column] = given.back_emf
         unlimited = given.max_torque >= sys.float_info.max
         values["max_torque_nm"][column] = np.inf if unlimited else given.max_torque
     return replace(servo, **values)
+
+
+def add_rotors(spec: mujoco.MjSpec, joints: Sequence[str], gains: Gains | None) -> None:
+    """Give joints without rotor inertia the one that is stated with their gains."""
+    for name in joints:
+        given = gains.get(name) if isinstance(gains, Mapping) else gains
+        joint = spec.joint(name)
+        if given is not None and given.armature > 0 and joint.armature == 0:
+            joint.armature = given.armature
 
 
 def remove_actuators(spec: mujoco.MjSpec) -> None:

@@ -12,7 +12,12 @@ from diagnosis.verdict import Verdict
 from experiments.diagnose import STAGES, CheckpointFiles, Diagnose, main
 from experiments.record import Record
 from experiments.record import main as record
-from groundwalk.errors import BadRecordingError, BadValueError, RunFolderError
+from groundwalk.errors import (
+    BadRecordingError,
+    BadValueError,
+    RunFolderError,
+    UnknownNameError,
+)
 
 
 @pytest.fixture(scope="module")
@@ -229,3 +234,13 @@ def test_gains_of_the_command_line_hold_for_all_servos(recording):
     gains = Diagnose((recording,), "nao", kp=8.0).gains
     assert (gains.kp, gains.kd, gains.max_torque) == (8.0, 0.0, sys.float_info.max)
     assert Diagnose((recording,), "nao").gains is None
+
+
+def test_a_type_of_servo_gives_all_gains(recording):
+    gains = Diagnose((recording,), "nao", servo="mx-64@12V,P=16").gains
+    assert gains.kp == pytest.approx(16 * 0.158 * 12 * 1.622 / 3.949)
+    assert (gains.kd, gains.armature) == (0.0, 0.01195)
+    with pytest.raises(BadValueError, match="either a servo type or kp"):
+        Diagnose((recording,), "nao", servo="mx-64", kp=8.0)
+    with pytest.raises(UnknownNameError, match="did you mean 'mx-64'"):
+        Diagnose((recording,), "nao", servo="mx64")

@@ -28,6 +28,13 @@ def test_robots():
     }
 
 
+def test_servos_with_their_sources():
+    rows = {row["servo"]: row for row in rows_of("servos")}
+    servo = rows["mx-64@12V,P=32"]
+    assert servo["stiffness [N m/rad]"] == "24.9"
+    assert all(row["source"] for row in rows.values())
+
+
 def test_every_terrain_is_there_with_what_can_be_set():
     rows = rows_of("terrains")
     families = [row["terrain"] for row in rows if row["terrain"]]

@@ -13,11 +13,15 @@ from groundwalk.json_data import from_plain, parse_object, to_plain
 FORMAT = 1
 _BASES = ("fixed", "floating")
 _REQUIRED = ("robot", "base", "source")
+_GAINS = ("kp", "kd", "max_torque")
 
 
 @dataclass(frozen=True)
 class ServoGains:
-    """Gains of a joint's position servo: torque = kp * error - kd * velocity.
+    """Gains of a joint's position servo.
+
+    Its torque is clip(kp * error - kd * velocity, +-max_torque) - back_emf * velocity,
+    error being command less position.
 
     Example:
       >>> ServoGains(kp=20.0, kd=0.5, max_torque=3.0).kp
@@ -30,6 +34,11 @@ class ServoGains:
     """Damping of the servo [N m s/rad; N s/m for a sliding joint]."""
     max_torque: float
     """Largest torque of the servo [N m; N for a sliding joint]; above 0."""
+    back_emf: float = 0.0
+    """Damping by the motor's back-EMF [N m s/rad], which no torque limit cuts."""
+    armature: float = 0.0
+    """Rotor inertia times the squared gear ratio [kg m^2; kg for a sliding joint]: a
+    joint gets it whose model states none. 0 if unknown."""
 
     def __post_init__(self) -> None:
         """Check that the gains are finite and not negative; turn them into floats."""
@@ -112,7 +121,12 @@ class RecordingMetadata:
     def to_json(self) -> str:
         """The metadata as JSON text, with sorted keys; unknown fields are left out."""
         plain = to_plain(self)
-        plain["servo"] = plain["servo"] or None
+        plain["servo"] = {
+            joint: {
+                key: value for key, value in gains.items() if value or key in _GAINS
+            }
+            for joint, gains in plain["servo"].items()
+        } or None
         known = {key: part for key, part in plain.items() if part is not None}
         return json.dumps({"format": FORMAT, **known}, sort_keys=True)
 

@@ -261,3 +261,27 @@ def test_real_recordings_fit_their_models(pattern, source, joints, servo):
     assert all(np.isfinite(trace.position_rad).all() for trace in traces)
     if servo is None:
         np.testing.assert_allclose(plant.servo.kp_nm_rad, [1370700])
+
+
+def test_a_known_motor_brings_its_back_emf_and_its_rotor(arm):
+    motor = ServoGains(5.0, 0.0, 1.5, back_emf=0.3, armature=0.02)
+    plant = load_plant(arm, "fixed", servo={"elbow": motor})
+    elbow = plant.joints.index("elbow")
+    assert plant.servo.back_emf_nm_s_rad[elbow] == 0.3
+    assert plant.servo.kd_nm_s_rad[elbow] == 0.0
+    dof = plant.dofs[elbow]
+    assert plant.model.dof_armature[dof] == 0.02
+    assert plant.model.dof_damping[dof] == 0.3
+    others = [plant.dofs[plant.joints.index(name)] for name in ("shoulder", "slider")]
+    assert not plant.model.dof_armature[others].any()
+
+
+def test_a_rotor_of_the_model_stays(tmp_path):
+    path = tmp_path / "arm.xml"
+    path.write_text(
+        ARM.replace('<joint name="elbow"', '<joint name="elbow" armature="1"')
+    )
+    motor = ServoGains(5.0, 0.0, 1.5, armature=0.02)
+    plant = load_plant(path, "fixed", servo=motor)
+    rotors = plant.model.dof_armature[[plant.dofs[i] for i in range(3)]]
+    assert sorted(rotors) == [0.02, 0.02, 1.0]

@@ -42,7 +42,18 @@ def test_all_there_can_be():
     assert (metadata.world, metadata.end) == ("sim", "fall")
 
 
-@pytest.mark.parametrize("document", [LEAST, FULL])
+MOTOR = {"kp": 20.0, "kd": 0.0, "max_torque": 9.0, "back_emf": 0.6, "armature": 0.03}
+KNOWN_MOTOR = LEAST | {"servo": {"knee": MOTOR}}
+
+
+def test_a_servo_may_state_its_motor():
+    (servo,) = read(KNOWN_MOTOR).servo.values()
+    assert (servo.back_emf, servo.armature) == (0.6, 0.03)
+    wrong = LEAST | {"servo": {"knee": MOTOR | {"armature": -1.0}}}
+    assert "armature must be a number from 0 up" in refusal(wrong)
+
+
+@pytest.mark.parametrize("document", [LEAST, FULL, KNOWN_MOTOR])
 def test_what_is_written_is_what_was_read(document):
     assert json.loads(read(document).to_json()) == document
 

@@ -1,0 +1,1 @@
+"""Position servos that are sold, as data with sources."""
