@@ -38,6 +38,7 @@ from diagnosis.search.reference import (
 from diagnosis.search.rules import Rules
 from diagnosis.tested import Tested, tested_effects
 from diagnosis.traces.reference import Reference
+from diagnosis.traces.split import Split
 from diagnosis.traces.trace import DriveBy, Trace
 from diagnosis.verdict import Amount, Fit, Found, Unexplained, Verdict
 from groundwalk.blas import one_blas_thread
@@ -57,6 +58,7 @@ class Diagnosis:
       nominal: the same, less the integration error of the nominal model, and without
         its small mismatch.
       audit: what the audit of the recordings found.
+      parts: the parts of the recordings by their use.
       given: effects that recordings of the healthy robot show, and likely small
         mismatch of its model; empty without such.
 
@@ -71,6 +73,7 @@ class Diagnosis:
     test: Predictor
     nominal: Predictor
     audit: Audit
+    parts: Split
     given: Model = ()
 
     @property
@@ -149,8 +152,8 @@ def diagnose(
         more = reference_limit(plant, learned.noise)
         verdict = replace(verdict, limits=(*verdict.limits, *more))
     sims = tested.sims[1], learned.data.test.nominal()
-    audited = learned.material.audited
-    return Diagnosis(verdict, tested.model, plant, *sims, audited, given)
+    about = learned.material.audited, learned.data.parts
+    return Diagnosis(verdict, tested.model, plant, *sims, *about, given)
 
 
 def _verdict(learned: Learned, tested: Tested) -> Verdict:

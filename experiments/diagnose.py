@@ -30,12 +30,14 @@ from diagnosis.corrected.effects_json import CORRECTED_JSON, Correction
 from diagnosis.corrected.mjcf import CORRECTED_XML, corrected_mjcf
 from diagnosis.search.hooks import Saved
 from diagnosis.seen import Seen
+from diagnosis.traces.time_line import time_line
 from diagnosis.traces.trace import DriveBy
 from experiments.command_line import run_verb
 from experiments.diagnosis_report.console import print_verdict
 from experiments.diagnosis_report.joints_shown import look_at
 from experiments.diagnosis_report.overlay import write_overlay
 from experiments.diagnosis_report.page import ReportFacts, write_report
+from experiments.diagnosis_report.text import badge
 from experiments.reports.origin import command_of, shown
 from experiments.runs.extras import extra
 from experiments.runs.folder import (
@@ -255,13 +257,16 @@ def _write(
     with extra(SEEN):
         seen = look_at(found, traces)
         folder.write_text(SEEN, seen.to_json())
+    own = found.verdict.pulses, found.verdict.effects
+    told = time_line(found.plant.joints, traces, found.parts, *own)
     with extra(REPORT):
         facts = _facts(config, folder, found)
-        write_report(folder.path / REPORT, found.verdict, series, facts, seen)
+        write_report(folder.path / REPORT, found.verdict, series, facts, seen, told)
     advance()
     with extra(OVERLAY):
-        fit = found.verdict.fit
-        write_overlay(folder.path / OVERLAY, series, fit, _description(config))
+        fit, words = found.verdict.fit, badge(found.verdict, bool(config.reference))
+        about = fit, _description(config), told, words
+        write_overlay(folder.path / OVERLAY, series, *about)
     advance()
 
 

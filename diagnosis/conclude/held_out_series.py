@@ -28,12 +28,13 @@ class HeldOutSeries:
     """A held-out recording, or a part of one, with the predictions of two sims.
 
     `channels` are by name, such as "position.LKneePitch"; the text before the first dot
-    is the quantity. The times (T,) increase.
+    is the quantity. The times (T,) increase; they are those of the `recording`.
     """
 
     name: str
     time_s: FloatArray
     channels: Mapping[str, ChannelSeries]
+    recording: str = ""
 
 
 def held_out_series(
@@ -53,7 +54,8 @@ def held_out_series(
             name: ChannelSeries(real[:, i], sim[k][:, i], after[k][:, i])
             for i, name in enumerate(corrected.channels.names)
         }
-        series.append(HeldOutSeries(trace.name, trace.time_s[rows], channels))
+        own = trace.time_s[rows], channels, trace.recording
+        series.append(HeldOutSeries(trace.name, *own))
     return series
 
 

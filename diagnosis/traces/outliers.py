@@ -4,6 +4,7 @@ On a servo bus a read now and then fails, and the recording has a 0 or an old va
 there. No joint moves like that, yet a single such row outweighs a second of friction.
 """
 
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -80,19 +81,51 @@ def without_outliers(trace: Trace) -> tuple[Trace, tuple[str, ...]]:
 
     Without wrong samples the trace is returned unchanged, with no sentence.
     """
-    changes, count = dict[str, Any](), 0
-    for name in MEASURED:
-        values: FloatArray | None = getattr(trace, name)
-        if values is None:
-            continue
-        wrong = np.stack([outliers(column) for column in values.T], axis=1)
-        if wrong.any():
-            changes[name] = np.where(wrong, np.nan, values)
-            count += int(wrong.sum())
-    if not changes:
+    wrong = _wrong(trace)
+    if not wrong:
         return trace, ()
+    count = sum(int(flags.sum()) for flags in wrong.values())
+    changes: dict[str, Any] = {
+        name: np.where(flags, np.nan, getattr(trace, name))
+        for name, flags in wrong.items()
+    }
     said = (
         f"{trace.name}: {count} {'value jumps' if count == 1 else 'values jump'} away "
         "for a moment and back, as no joint moves; left out as wrong samples"
     )
     return replace(trace, **changes), (said,)
+
+
+def wrong_samples(trace: Trace, joints: Sequence[str]) -> Mapping[str, FloatArray]:
+    """Times [s] of the wrong samples of a recording, by channel.
+
+    A channel is named as in recordings, such as "position.elbow"; `joints` are the
+    names of the trace's joints. Of the gyroscope's axes any counts.
+
+    Example:
+      >>> wrong_samples(trace, ["swing"])
+      {'position.swing': array([2.31])}
+    """
+    found = dict[str, FloatArray]()
+    for field, flags in _wrong(trace).items():
+        quantity = field.partition("_")[0]
+        if flags.shape[1] != len(joints) or quantity == "gyroscope":
+            found[quantity] = trace.time_s[flags.any(axis=1)]
+            continue
+        for joint, own in zip(joints, flags.T, strict=True):
+            if own.any():
+                found[f"{quantity}.{joint}"] = trace.time_s[own]
+    return found
+
+
+def _wrong(trace: Trace) -> dict[str, BoolArray]:
+    """(T, c) which values are wrong samples, by the fields that have any."""
+    found = dict[str, BoolArray]()
+    for name in MEASURED:
+        values: FloatArray | None = getattr(trace, name)
+        if values is None:
+            continue
+        flags = np.stack([outliers(column) for column in values.T], axis=1)
+        if flags.any():
+            found[name] = flags
+    return found

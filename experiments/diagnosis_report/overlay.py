@@ -5,6 +5,7 @@
 | `real`, `sim`, `corrected` | the three robots, moving as in the first recording |
 | `held_out/<recording>/<channel>/course` | lines: real, sim, corrected; SI units |
 | `held_out/<recording>/<channel>/error` | lines: sim - real, corrected - real |
+| `held_out/<recording>/state/...` | verdict, stalls, pulses and wrong samples |
 
 The unit of an error, such as mrad, is in its plot's title. Time 0 is the start of each
 held-out part, which may be seconds after the start of its recording.
@@ -17,8 +18,10 @@ from pathlib import Path
 import numpy as np
 
 from diagnosis.conclude.held_out_series import ChannelSeries, HeldOutSeries, by_error
+from diagnosis.traces.time_line import Stretch
 from diagnosis.verdict import Fit
 from experiments.diagnosis_report.numbers import error_unit, unit_text
+from experiments.diagnosis_report.time_line_figure import EVENTS
 from experiments.seeing.scenes import scene_names
 from robots.description import Description
 from worlds import Recording, RecordingMetadata
@@ -26,6 +29,7 @@ from worlds.recordings.recording import vector_columns
 from worlds.rerun_files.log import write_rrd
 from worlds.scenes.colours import accent
 from worlds.scenes.curves import Curve, Trace
+from worlds.scenes.lanes import Lane, lane_of
 from worlds.scenes.scene import Scene
 
 COLOURS = {name: accent(index) for index, name in enumerate(ChannelSeries._fields)}
@@ -40,6 +44,8 @@ def write_overlay(
     series: Sequence[HeldOutSeries],
     fit: Fit | None = None,
     description: Description | None = None,
+    time_line: Sequence[Stretch] = (),
+    verdict: str = "",
 ) -> None:
     """Write the file: a tab for each recording and quantity, the worst channels first.
 
@@ -51,6 +57,8 @@ def write_overlay(
       description: the robot model, whose real, sim and corrected versions move side by
         side as in the first recording; None for curves only. A base that was not
         recorded stays at the origin.
+      time_line: what happened in the recordings, shown above their curves.
+      verdict: the verdict in some words, shown there, too; "" leaves it out.
 
     Raises:
       BadValueError: there are no series.
@@ -59,14 +67,41 @@ def write_overlay(
       >>> write_overlay(Path("overlay.rrd"), found.held_out(), found.verdict.fit)
     """
     pages: dict[str, Sequence[Curve]] = {}
+    lanes: dict[str, Sequence[Lane]] = {}
     for one, name in zip(series, scene_names(one.name for one in series), strict=True):
         for kind, channels in _by_kind(by_error(one, fit)).items():
             for start in range(0, len(channels), CHANNELS_PER_PAGE):
                 some = channels[start : start + CHANNELS_PER_PAGE]
                 page = f"{one.name}: {kind} {start + 1} to {start + len(some)}"
                 pages[page] = _curves(one, f"held_out/{name}", some, fit)
+                at = f"held_out/{name}/state"
+                lanes[page] = state_lanes(one, time_line, verdict, at)
     scenes = _scenes(series[0], description) if series and description else []
-    write_rrd(path, scenes, _identity(series), pages)
+    write_rrd(path, scenes, _identity(series), pages, lanes)
+
+
+def state_lanes(
+    series: HeldOutSeries, time_line: Sequence[Stretch], verdict: str, at: str
+) -> list[Lane]:
+    """Lanes of the verdict and of each kind of event in a held-out recording.
+
+    Times count from the start of its held-out part; the lanes are below the path `at`.
+    """
+    first_s, last_s = float(series.time_s[0]), float(series.time_s[-1])
+    spans = dict[str, list[tuple[float, float, str]]]()
+    for one in time_line:
+        inside = one.start_s <= last_s and one.end_s >= first_s
+        if one.recording == series.recording and one.what in EVENTS and inside:
+            start_s, end_s = max(one.start_s, first_s), min(one.end_s, last_s)
+            state = " ".join(filter(None, (one.channel, one.why))) or one.what
+            own = start_s - first_s, end_s - first_s, state
+            spans.setdefault(one.what, []).append(own)
+    lanes = [Lane(f"{at}/verdict", [(0.0, verdict)])] if verdict else []
+    names = scene_names(spans)
+    return lanes + [
+        lane_of(f"{at}/{name}", own)
+        for name, own in zip(names, spans.values(), strict=True)
+    ]
 
 
 def _by_kind(channels: Sequence[str]) -> dict[str, list[str]]:

@@ -10,6 +10,7 @@ from diagnosis.conclude.held_out_series import HeldOutSeries, by_error
 from diagnosis.effects import effect as kind_of
 from diagnosis.residuals.channels import LEAST_TORQUE
 from diagnosis.seen import Seen
+from diagnosis.traces.time_line import Stretch
 from diagnosis.verdict import Errors, Fit, Found
 from experiments.diagnosis_report.figure_style import inline_svg
 from experiments.diagnosis_report.figures import (
@@ -31,6 +32,7 @@ from experiments.diagnosis_report.numbers import (
 )
 from experiments.diagnosis_report.place_words import place_words
 from experiments.diagnosis_report.text import answer, badge, doubts, next_step, question
+from experiments.diagnosis_report.time_line_figure import time_line_shown
 from experiments.reports.report import render
 from groundwalk.files import write_text
 
@@ -86,6 +88,7 @@ def write_report(
     series: Sequence[HeldOutSeries],
     facts: ReportFacts,
     seen: Seen | None = None,
+    time_line: Sequence[Stretch] = (),
 ) -> None:
     """Write the page; after an error no partial file remains.
 
@@ -95,6 +98,7 @@ def write_report(
       series: held-out recordings, the most important first; may be empty.
       facts: origin of the diagnosis.
       seen: what each joint shows before any effect is named; None leaves it out.
+      time_line: uses and events of the recordings; may be empty.
 
     Raises:
       UnknownNameError: the verdict names an unknown effect.
@@ -105,6 +109,7 @@ def write_report(
     """
     parts = _words(verdict, facts) | _shown(verdict, series)
     parts["joints"] = None if seen is None else joints_shown(seen)
+    parts["time_line"] = time_line_shown(time_line) if time_line else None
     write_text(path, render(TEMPLATE, **parts))
 
 

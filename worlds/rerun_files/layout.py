@@ -1,6 +1,7 @@
 """Layout of a Rerun file: the views of robots, feet and curves, and their places."""
 
 from collections.abc import Mapping, Sequence
+from types import MappingProxyType
 
 import numpy as np
 import rerun as rr
@@ -10,6 +11,7 @@ from groundwalk.arrays import FloatArray
 from worlds.recordings.recording import SUPPORT
 from worlds.scenes.balance import loaded_feet
 from worlds.scenes.curves import MEASURED_SUPPORT, Curve, plots
+from worlds.scenes.lanes import Lane
 from worlds.scenes.scene import Scene
 
 MOST_ABREAST = 2
@@ -19,18 +21,26 @@ _ON_GROUND = ("below", "pressure", "zmp", "polygon")
 _MARGIN = 0.05
 """Free space above and below a curve in its plot, as a share of the curve's range."""
 _PAGE_COLUMNS = 2
+_LANE_SHARE = 0.15
+"""Height of a lane of states, as a share of that of a plot."""
 _ROBOT_COLUMNS = 4
 
 
 def blueprint(
-    scenes: Sequence[Scene], pages: Mapping[str, Sequence[Curve]]
+    scenes: Sequence[Scene],
+    pages: Mapping[str, Sequence[Curve]],
+    lanes: Mapping[str, Sequence[Lane]] = MappingProxyType({}),
 ) -> rrb.Blueprint:
     """Lay out a file: scenes from left to right, each above its curves.
 
     `pages` are further curves by the name of their tab. If there are any, they are
-    below the robots instead of the scenes' own curves.
+    below the robots instead of the scenes' own curves; the `lanes` of a page are above
+    its curves.
     """
-    tabs: list[rrb.Grid | rrb.Vertical] = [_page(*page) for page in pages.items()]
+    tabs: list[rrb.Grid | rrb.Vertical] = [
+        _page_with_lanes(name, curves, lanes.get(name, ()))
+        for name, curves in pages.items()
+    ]
     if not pages and len(scenes) > MOST_ABREAST:
         tabs = [_scene_tab(scene) for scene in scenes]
     rows = []
@@ -43,6 +53,23 @@ def blueprint(
         rrb.TimePanel(timeline="sim_time", state="collapsed", loop_mode="All"),
         collapse_panels=True,
     )
+
+
+def _page_with_lanes(
+    name: str, curves: Sequence[Curve], lanes: Sequence[Lane]
+) -> rrb.Grid | rrb.Vertical:
+    """A tab of plots below a time line of states, if there are any."""
+    plots = _page(name, curves)
+    if not lanes:
+        return plots
+    states = rrb.StateTimelineView(
+        name="what happened",
+        origin="/",
+        contents=[f"/{lane.path}" for lane in lanes],
+    )
+    rows = -(-len(curves) // _PAGE_COLUMNS)
+    shares = [_LANE_SHARE * (1 + len(lanes)), float(rows)]
+    return rrb.Vertical(states, plots, row_shares=shares, name=name)
 
 
 def _page(name: str, curves: Sequence[Curve]) -> rrb.Grid:

@@ -23,6 +23,7 @@ from worlds.scenes.curves import (
     support_changes,
     traces,
 )
+from worlds.scenes.lanes import Lane
 from worlds.scenes.scene import SIDES, Scene
 from worlds.scenes.shapes import capsules, fall_ring, ground_mesh, sole_mesh, sole_rim
 from worlds.world import FALLS, End
@@ -86,6 +87,14 @@ class ColumnLog:
             for name, times in self._timelines.items()
         ]
         self._stream.send_columns(f"{self._at}{path}", indexes, columns, strict=True)
+
+
+def write_lane(stream: rr.RecordingStream, lane: Lane) -> None:
+    """Write the states of a lane over the recording's time."""
+    times_s = np.array([time_s for time_s, _ in lane.changes])
+    at = rr.TimeColumn("sim_time", duration=tick_times(times_s)["sim_time"])
+    states = rr.StateChange.columns(state=[state for _, state in lane.changes])
+    stream.send_columns(lane.path, [at], states, strict=True)
 
 
 _ARROW_RADIUS_M, _RIM_RADIUS_M = 0.006, 0.0015
