@@ -37,6 +37,7 @@ class PayloadMass(NumberEffect, BodyEffect):
         "extra mass",
         "{body} carries {mass} {lacking}",
         "A load, a battery or a cable that the model does not know of.",
+        "Weigh the part with its cables and screws.",
     )
 
     def parameters(self, plant: Plant, place: str) -> tuple[Parameter, ...]:
@@ -76,6 +77,8 @@ class ComOffset(NumberEffect, BodyEffect):
         "the centre of mass of {body} is shifted from its place {usual} by {x} in x, "
         "{y} in y and {z} in z",
         "The mass is right, but sits elsewhere in the body.",
+        "Balance the part on an edge; look for batteries, cables and screws that its "
+        "drawing lacks.",
     )
 
     def places(self, plant: Plant, traces: Sequence[Trace]) -> tuple[str, ...]:
@@ -112,6 +115,7 @@ class Drag(NumberEffect, BodyEffect):
         "drag",
         "{body} meets a drag of {coefficient} {lacking}",
         "A force against the body's velocity, as of air, water or a trailing cable.",
+        "Look for what drags along: a cable, water, a cover.",
     )
 
     def places(self, plant: Plant, traces: Sequence[Trace]) -> tuple[str, ...]:
@@ -148,6 +152,8 @@ class ExternalForce(BodyEffect):
         "push from outside",
         "{body} was pushed with {x} in x, {y} in y and {z} in z",
         "A hand, a cable or a collision pushes a body for some time.",
+        "Look at what was around the robot at that time: a person, a cable, an "
+        "obstacle.",
     )
 
     def parameters(self, plant: Plant, place: str) -> tuple[Parameter, ...]:

@@ -39,6 +39,8 @@ class ViscousFriction(NumberEffect, JointEffect):
         "viscous friction",
         "{joint} has viscous friction of {coefficient} {lacking}",
         "A torque against the motion that grows with speed, as in thick grease.",
+        "Warm the joint up and record again; if it stays, clean the gear and renew its "
+        "grease.",
     )
 
     def parameters(self, plant: Plant, place: str) -> tuple[Parameter, ...]:
@@ -88,6 +90,8 @@ class CoulombFriction(NumberEffect, JointEffect):
         "{joint} has dry friction of {torque} {lacking}",
         "A torque against the motion that is the same at all speeds; at rest it holds "
         "the joint until something stronger pulls.",
+        "Look for what rubs: a bearing or a screw that is too tight, a bent shaft, a "
+        "cable; a new gear rubs less after some hours.",
     )
 
     def parameters(self, plant: Plant, place: str) -> tuple[Parameter, ...]:
@@ -123,6 +127,8 @@ class StribeckFriction(JointEffect):
         "{speed}, {lacking}",
         "Dry friction that is larger near standstill than in motion, so that slow "
         "movements stick and slip.",
+        "A gear that sticks at rest wants cleaning and grease; a small dither of the "
+        "command gets it moving.",
     )
 
     def parameters(self, plant: Plant, place: str) -> tuple[Parameter, ...]:
@@ -192,6 +198,8 @@ class LoadFriction(NumberEffect, JointEffect):
         "friction that grows with load",
         "{joint} has friction of {share} times its servo's torque {lacking}",
         "Gears and bearings rub harder the more torque passes through them.",
+        "This friction is the gear's: clean, grease or replace it, or let it carry "
+        "less.",
     )
 
     def places(self, plant: Plant, traces: Sequence[Trace]) -> tuple[str, ...]:

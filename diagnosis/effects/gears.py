@@ -50,6 +50,8 @@ class Backlash(ServoEffect):
         "{joint} has play of {gap} {lacking}",
         "Gears with a gap between their teeth: after each reversal the motor turns "
         "before the joint follows.",
+        "Tighten or replace the gear, or keep its teeth on one side by a constant "
+        "load.",
     )
 
     def parameters(self, plant: Plant, place: str) -> tuple[Parameter, ...]:
@@ -101,6 +103,7 @@ class JointElasticity(JointEffect):
         "and a damping of {damping}, {lacking}",
         "A gear or shaft that winds up like a spring, so that the link lags behind its "
         "motor and rings.",
+        "Look for a loose horn, coupling or belt, and for a link that bends.",
     )
 
     def places(self, plant: Plant, traces: Sequence[Trace]) -> tuple[str, ...]:

@@ -85,6 +85,7 @@ class GroundSlope(Effect):
         "the ground, or the mounting of the base, is tilted by {pitch} in pitch and "
         "{roll} in roll",
         "Gravity does not point where the model has it.",
+        "Lay a spirit level on the ground or the robot's mount.",
     )
 
     def places(self, plant: Plant, traces: Sequence[Trace]) -> tuple[str, ...]:
@@ -154,6 +155,7 @@ class UnevenGround(NumberEffect):
         "uneven ground",
         "the ground has bumps of {height} {lacking}",
         "The feet meet the ground earlier or later than on a plane.",
+        "Let the robot do the same on another floor.",
     )
 
     def places(self, plant: Plant, traces: Sequence[Trace]) -> tuple[str, ...]:
@@ -213,6 +215,7 @@ class ContactFriction(Effect):
         "the friction coefficient between feet and ground is {coefficient}, unlike "
         "{usual}",
         "The feet slip earlier, or later, than they should.",
+        "Clean soles and floor.",
     )
 
     def places(self, plant: Plant, traces: Sequence[Trace]) -> tuple[str, ...]:
@@ -267,6 +270,7 @@ class ContactCompliance(Effect):
         "the ground gives way under each foot with a stiffness of {stiffness} "
         "{lacking}",
         "Carpet, grass or rubber soles: the feet sink in and come back late.",
+        "Look for soft soles, a carpet, or play in the ankles.",
     )
 
     def places(self, plant: Plant, traces: Sequence[Trace]) -> tuple[str, ...]:

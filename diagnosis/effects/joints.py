@@ -40,6 +40,7 @@ class Armature(NumberEffect, JointEffect):
         "rotor inertia",
         "{joint} has {inertia} of rotor inertia {lacking}",
         "The motor's rotor, geared up, resists acceleration as a flywheel does.",
+        "Take the rotor's inertia from the data sheet, times the squared gear ratio.",
     )
 
     def parameters(self, plant: Plant, place: str) -> tuple[Parameter, ...]:
@@ -75,6 +76,7 @@ class EncoderOffset(NumberEffect, JointEffect):
         "the encoder of {joint} is off by {offset}",
         "Measured angle less true angle, as after mounting a servo horn one tooth "
         "aside; the servo acts on the wrong angle, too.",
+        "Home the joint again, or correct its zero.",
     )
 
     def tolerance(self, plant: Plant, place: str) -> float:
@@ -96,6 +98,7 @@ class JointSpring(JointEffect):
         "spring at a joint",
         "{joint} has a spring of {stiffness} that pulls to {rest}, {lacking}",
         "A cable, a hose or a return spring pulls the joint to one angle.",
+        "Look for cables and hoses that bend with the joint.",
     )
 
     def parameters(self, plant: Plant, place: str) -> tuple[Parameter, ...]:
@@ -151,6 +154,8 @@ class TorqueOffset(TorqueEffect):
         "a constant torque of {torque} acts on {joint}, {lacking}",
         "Friction that differs between the directions, a cable that pulls, or a weight "
         "that is not balanced as in the model.",
+        "Look for a cable under tension, a balancing spring, or a torque sensor that "
+        "does not show 0 at rest.",
     )
 
     def parameters(self, plant: Plant, place: str) -> tuple[Parameter, ...]:
@@ -188,6 +193,7 @@ class EndStop(JointEffect):
         "end stop",
         "{joint} hits a stop at {angle} {lacking}",
         "Something stops the joint before the end of its nominal range.",
+        "Move the joint by hand to where it stops: something is in its way.",
     )
 
     def places(self, plant: Plant, traces: Sequence[Trace]) -> tuple[str, ...]:

@@ -77,6 +77,7 @@ class EffectWords(NamedTuple):
         lacks" and `{usual}` for "in the sim"; the last two have other words where
         recordings of the healthy robot are the reference.
       meaning: explanation for a reader of the report, in one sentence.
+      advice: what to look at or to do at the robot, in one sentence; "" for nothing.
 
     Example:
       >>> EffectWords("water drag", "{joint} has {coefficient} of drag {lacking}", "")
@@ -85,6 +86,7 @@ class EffectWords(NamedTuple):
     label: str
     finding: str
     meaning: str
+    advice: str = ""
 
     @property
     def place_kind(self) -> str:

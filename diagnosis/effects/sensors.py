@@ -33,6 +33,7 @@ class TorqueScale(NumberEffect, JointEffect):
         "the measured torque of {joint} is {factor} times the true one",
         "A motor's torque constant, a gear ratio or a torque sensor is not what the "
         "recording takes it for.",
+        "Check the torque constant by which currents became torques.",
     )
 
     def places(self, plant: Plant, traces: Sequence[Trace]) -> tuple[str, ...]:
@@ -68,6 +69,8 @@ class SensorDelay(NumberEffect):
         "late sensors",
         "joint positions and velocities are {delay} older than their time stamps say",
         "What the sensors report has already passed when it gets its time stamp.",
+        "Read the encoders later in the cycle, or stamp their values with the time at "
+        "which they were read.",
     )
 
     def places(self, plant: Plant, traces: Sequence[Trace]) -> tuple[str, ...]:
@@ -97,6 +100,8 @@ class GyroBias(NumberEffect):
         "gyroscope bias",
         "the gyroscope is off by {x} about x, {y} about y and {z} about z",
         "The gyroscope reports a turn rate even when nothing turns.",
+        "Measure the gyroscope while the robot stands still, and subtract what it "
+        "shows.",
     )
 
     def places(self, plant: Plant, traces: Sequence[Trace]) -> tuple[str, ...]:

@@ -52,6 +52,8 @@ class ServoGain(NumberEffect, ServoEffect):
         "servo stiffness",
         "the servo of {joint} has {factor} times its stiffness {usual}",
         "The torque that the servo gives for each radian of error is another one.",
+        "Read the gain from the servo, and measure its supply voltage: the stiffness "
+        "is proportional to both.",
     )
 
     def tolerance(self, plant: Plant, place: str) -> float:
@@ -92,6 +94,8 @@ class ServoDamping(NumberEffect, JointEffect):
         "servo damping",
         "the servo of {joint} has {factor} times its damping {usual}",
         "The torque with which servo and motor brake, for each rad/s, is another one.",
+        "Read the derivative gain from the servo; the rest of its damping is the "
+        "motor's back-EMF.",
     )
 
     def tolerance(self, plant: Plant, place: str) -> float:
@@ -125,6 +129,8 @@ class ServoFade(NumberEffect, ServoEffect):
         "servo that weakens",
         "the servo of {joint} loses {rate} of its stiffness, unlike {usual}",
         "A motor that gets hot, or a battery that runs down, pulls less and less.",
+        "Watch the motor's temperature and the supply voltage; let it cool, charge the "
+        "battery.",
     )
 
     def acted(self, placed: PlacedEffect, first_s: float, last_s: float) -> When:
@@ -158,6 +164,8 @@ class ServoOff(JointEffect):
         "motor that switches off",
         "the motor of {joint} lost {share} of its torque",
         "A servo switches itself off at overload, heat or low voltage; a motor dies.",
+        "Read the servo's error register: overload, heat and low voltage switch it "
+        "off.",
     )
 
     def parameters(self, plant: Plant, place: str) -> tuple[Parameter, ...]:
@@ -196,6 +204,8 @@ class TorqueLimit(NumberEffect, JointEffect):
         "torque limit",
         "the motor of {joint} gives no more than {torque}, less than {usual}",
         "A motor that is weaker than the data sheet says, or a current limit.",
+        "Look at the servo's limits of current and torque, and at the supply voltage "
+        "under load.",
     )
 
     def parameters(self, plant: Plant, place: str) -> tuple[Parameter, ...]:
@@ -238,6 +248,7 @@ class SpeedLimit(NumberEffect, ServoEffect):
         "speed limit",
         "the servo of {joint} moves its target no faster than {speed}, unlike {usual}",
         "A setting in the servo's firmware that slows its target down.",
+        "Look at the servo's setting for its moving speed or profile.",
     )
 
     def places(self, plant: Plant, traces: Sequence[Trace]) -> tuple[str, ...]:
@@ -284,6 +295,8 @@ class CommandLatency(NumberEffect):
         "late commands",
         "commands take effect {delay} later than {usual}",
         "The time from sending a command until the servos act on it.",
+        "Look at the way from the program to the servos: rate of the bus, buffers, "
+        "interpolation.",
     )
 
     def places(self, plant: Plant, traces: Sequence[Trace]) -> tuple[str, ...]:

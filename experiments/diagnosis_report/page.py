@@ -12,6 +12,7 @@ from diagnosis.residuals.channels import LEAST_TORQUE
 from diagnosis.seen import Seen
 from diagnosis.traces.time_line import Stretch
 from diagnosis.verdict import Errors, Fit, Found
+from experiments.diagnosis_report.advice import advised
 from experiments.diagnosis_report.figure_style import inline_svg
 from experiments.diagnosis_report.figures import (
     bars_figure,
@@ -30,7 +31,7 @@ from experiments.diagnosis_report.numbers import (
     percent,
     sure_text,
 )
-from experiments.diagnosis_report.place_words import place_words
+from experiments.diagnosis_report.place_words import at_words, place_words
 from experiments.diagnosis_report.text import answer, badge, doubts, next_step, question
 from experiments.diagnosis_report.time_line_figure import time_line_shown
 from experiments.reports.report import render
@@ -122,6 +123,7 @@ def _words(verdict: Verdict, facts: ReportFacts) -> dict[str, Any]:
         "question": question(facts.robot, facts.changed),
         "badge": badge(verdict, facts.changed),
         "answer": answer(verdict, facts.changed),
+        "advice": list(advised(verdict)),
         "doubts": doubts(verdict),
         "next_step": next_step(verdict),
         "effects": [_effect_row(effect) for effect in verdict.effects],
@@ -188,6 +190,7 @@ def _effect_row(effect: Found) -> dict[str, Any]:
         "parameters": parameter_rows(effect),
         "sure": sure_text(effect.probability),
         "when": times,
+        "instead": ", ".join(map(at_words, effect.confusable_with)) or DASH,
         "meaning": kind_of(effect.name).words.meaning,
         "native": effect.native,
     }
