@@ -17,13 +17,13 @@ from diagnosis.conclude.answer import (
     believed_effects,
     is_small,
 )
-from diagnosis.conclude.estimates import smallest_detectable
 from diagnosis.conclude.held_out_errors import (
     larger_than_learned,
 )
 from diagnosis.conclude.held_out_series import HeldOutSeries, held_out_series
 from diagnosis.conclude.next_experiment import next_experiment
 from diagnosis.conclude.nuisance_found import sure_nuisance
+from diagnosis.conclude.smallest_sizes import smallest_detectable
 from diagnosis.learned import Learned
 from diagnosis.material import Material
 from diagnosis.plant.plant import Plant

@@ -40,6 +40,9 @@ VERBS = {
         "TerrainStress", "find the roughest ground that gaits can walk"
     ),
     "transfer": Verb("STUDIES", "repeat an experiment of the SGAT paper"),
+    "check": Verb(
+        "CheckRecordings", "what recordings can show, and what to record next"
+    ),
     "diagnose": Verb("Diagnose", "find the physics that a sim lacks, from recordings"),
     "predict": Verb("Predict", "check a diagnosis on recordings that it has not seen"),
     "real-robots": Verb("RealRobots", "diagnose recordings of known real robots"),

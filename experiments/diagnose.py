@@ -25,7 +25,6 @@ from diagnosis import (
     read_reference,
     read_traces,
 )
-from diagnosis.audit import audit
 from diagnosis.corrected.effects_json import CORRECTED_JSON, Correction
 from diagnosis.corrected.mjcf import CORRECTED_XML, corrected_mjcf
 from diagnosis.search.hooks import Saved
@@ -57,7 +56,7 @@ from groundwalk.files import write_bytes
 from worlds import ServoGains
 
 VERB = "diagnose"
-_NO_SETTINGS = ("recordings", "out", "resume", "json", "audit_only")
+_NO_SETTINGS = ("recordings", "out", "resume", "json")
 VERDICT, REPORT, OVERLAY, AUDIT, SEEN = (
     "diagnosis.json", "report.html", "overlay.rrd", "audit.json", "seen.json",
 )  # fmt: skip
@@ -88,7 +87,6 @@ class Diagnose(RunOptions):
       least_share: smallest share of the sim's squared error that an effect must explain
         to be reported, from 0 to below 1.
       threads: processor threads of the replays.
-      audit_only: only check the recordings, print their limits, and stop.
 
     Example:
       See docs/python.md, "Diagnose your own recording".
@@ -107,7 +105,6 @@ class Diagnose(RunOptions):
     drive: DriveBy = "servos"
     least_share: float = Rules.least_share
     threads: int = 2
-    audit_only: bool = False
 
     def __post_init__(self) -> None:
         """Refuse invalid options before anything is written."""
@@ -130,10 +127,7 @@ class Diagnose(RunOptions):
 
 
 def main(config: Diagnose) -> None:
-    """Diagnose and print the verdict, or only check the recordings (--audit-only)."""
-    if config.audit_only:
-        print_audit(config)
-        return
+    """Diagnose and print the verdict."""
     folder, verdict = run_diagnosis(config)
     if config.json:
         print(verdict.to_json(), end="")
@@ -142,26 +136,6 @@ def main(config: Diagnose) -> None:
         paths = [path for path in written if path.exists()]
         asked = folder.read_json(CONFIG)  # a resumed run has no options of its own
         print_verdict(verdict, paths, changed=bool(asked["reference"]))
-
-
-def print_audit(config: Diagnose) -> None:
-    """Print the check of the recordings with which a diagnosis begins."""
-    plant, traces, reference = _read(_with_robot(config))
-    healthy = reference.traces if reference else ()
-    found = audit([*traces, *healthy], plant, healthy)
-    if config.json:
-        print(found.to_json())
-        return
-    for trace in found.traces:
-        moving = sum(joint.moves for joint in trace.joints)
-        print(
-            f"{trace.name}: {trace.duration_s:.3g} s, {trace.rate_hz:.3g} rows a "
-            f"second, {moving} of {len(plant.joints)} joints move"
-        )
-    for finding in found.findings:
-        print(f"{finding.severity}: {finding.text}")
-    if found.refused:
-        raise BadRecordingError("these recordings cannot be diagnosed, see above")
 
 
 def run_diagnosis(config: Diagnose) -> tuple[RunFolder, Verdict]:
@@ -176,14 +150,14 @@ def run_diagnosis(config: Diagnose) -> tuple[RunFolder, Verdict]:
     check_free(config.out)
     # recordings that cannot be read are refused before a folder is made
     config = _with_robot(config)
-    read = None if config.resume else _read(config)
+    read = None if config.resume else read_all(config)
     folder, config = open_run(VERB, config)
     checkpoint = CheckpointFiles(folder.path / STAGES)
     if folder.has(VERDICT) and not checkpoint.exists():
         return folder, Verdict.from_json((folder.path / VERDICT).read_text())
     with Stages("diagnosis", config.threads) as stages:
         hooks = Hooks(stages, checkpoint)
-        read = read or _read(config)
+        read = read or read_all(config)
         found = _diagnosed(config, read, folder, hooks)
         stages.stage("report", 3)
         _write(config, folder, found, read[1], stages.advance)
@@ -209,7 +183,7 @@ Read = tuple[Plant, list[Trace], Reference | None]
 """The robot model, the recordings, and the reference recordings (healthy robot)."""
 
 
-def _read(config: Diagnose) -> Read:
+def read_all(config: Diagnose) -> Read:
     """Read the robot model, its recordings and the reference recordings."""
     plant, traces = read_traces(config.recordings, config.robot, config.gains)
     then = config.reference_robot or config.robot

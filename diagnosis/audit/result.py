@@ -2,7 +2,7 @@
 
 import json
 from dataclasses import asdict, dataclass
-from typing import Literal
+from typing import Any, Literal
 
 from diagnosis.traces.noise import Noise
 
@@ -122,8 +122,13 @@ class Audit:
 
     def to_json(self) -> str:
         """The audit as JSON text; numbers that are not finite become null."""
+        return json.dumps(self.to_plain(), indent=1)
+
+    def to_plain(self) -> dict[str, Any]:
+        """The audit as plain data for JSON; numbers that are not finite become None."""
         text = json.dumps(asdict(self))
-        return json.dumps(json.loads(text, parse_constant=lambda _: None), indent=1)
+        plain: dict[str, Any] = json.loads(text, parse_constant=lambda _: None)
+        return plain
 
     def _texts(self, severity: Severity) -> tuple[str, ...]:
         return tuple(item.text for item in self.findings if item.severity == severity)

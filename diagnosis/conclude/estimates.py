@@ -1,17 +1,15 @@
-"""Intervals for fitted values, and the smallest sizes of effects that would show."""
+"""Intervals for fitted values."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 
 import numpy as np
 
 from diagnosis.effects.library import effect
-from diagnosis.residuals.coordinates import STEP, Coordinates
+from diagnosis.residuals.coordinates import STEP
 from diagnosis.residuals.predictor import Predictor
-from diagnosis.residuals.signatures import Signature
-from diagnosis.residuals.small_mismatch.usual_errors import USUAL
 from diagnosis.residuals.ties import groups_of
 from diagnosis.search.fitting import FittedModel
-from diagnosis.verdict import Amount, Estimate
+from diagnosis.verdict import Estimate
 from groundwalk.arrays import BoolArray, FloatArray, IntArray
 
 Z_80 = 1.2815515655446004
@@ -227,34 +225,3 @@ def _variance(sums: FloatArray) -> float:
         return variance
     padded = np.append(sums, 0.0) if len(sums) % 2 else sums
     return _variance(padded.reshape(-1, 2).sum(axis=1))
-
-
-def smallest_detectable(
-    predictor: Predictor, found: Sequence[Signature], gain: float
-) -> Mapping[str, Amount]:
-    """The size of each effect, by "effect@place", that would just be reported.
-
-    The change of the residual by an effect (its signature) is taken as proportional to
-    the effect's size, hence the gain grows with the square of the size. Effects that
-    act only above a threshold are left out. `gain` [nats] is what an effect needs to be
-    reported. What a model states must be further off than is usual.
-    """
-    sizes: dict[str, Amount] = {}
-    for signature in found:
-        placed = signature.placed
-        power = 0.5 * float(signature.change @ signature.change)
-        if effect(placed.name).threshold or power <= 0:
-            continue
-        first = Coordinates(predictor.plant, (placed,)).parameters[0]
-        if not np.isfinite(first.neutral):
-            continue
-        tried = max(abs(value) for value in placed.values[:1])
-        size = abs(tried - first.neutral) or max(map(abs, placed.values))
-        least = size * float(np.sqrt(gain / power))
-        kind = effect(placed.name)
-        if kind.tolerance(predictor.plant, placed.place):  # smaller ones are usual
-            least = max(least, USUAL * kind.spread(predictor.plant, placed.place))
-        if placed.key not in sizes or least < sizes[placed.key].value:
-            unit = predictor.plant.unit(first.unit, placed.place)
-            sizes[placed.key] = Amount(least, unit)
-    return sizes

@@ -1,11 +1,12 @@
 """Proposes the recording that would best distinguish between two answers."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
 
 from diagnosis.conclude.answer import TIED_NATS
+from diagnosis.motions.shapes import MOTIONS, Motion
 from diagnosis.plant.plant import Plant
 from diagnosis.replay.replay import replay
 from diagnosis.residuals.predictor import Model
@@ -15,31 +16,12 @@ from diagnosis.traces.trace import Trace
 from diagnosis.traces.usage import Usage
 from diagnosis.traces.windows import Run
 from diagnosis.verdict import NextExperiment
-from groundwalk.arrays import FloatArray
-
-DURATION_S = 6.0
-"""Duration of the proposed motion [s]."""
 
 TICK_S = 0.01
 """Control tick of the proposed motion [s]."""
 
 REACH = 0.8
 """Share of each joint's range in the recordings that the proposed motion uses."""
-
-Motion = Callable[[FloatArray, float], FloatArray]
-"""A function from (T,) times [s] and a duration [s] to (T,) positions from -1 to 1."""
-
-MOTIONS: dict[str, Motion] = {
-    "slow ramp there and back": lambda t, d: 1 - 2 * np.abs(1 - 2 * t / d),
-    "steps": lambda t, d: np.sign(np.sin(2 * np.pi * t / 1.5)),
-    "chirp from 0.2 to 5 Hz": lambda t, d: (
-        0.3 * np.sin(2 * np.pi * (0.2 * t + 2.4 * t**2 / d))
-    ),
-    "slow sine of full reach": lambda t, d: np.sin(2 * np.pi * t / d),
-    "small fast sine": lambda t, d: 0.1 * np.sin(2 * np.pi * 3 * t),
-    "hold at mirrored poses": lambda t, d: np.where(t < d / 2, 0.8, -0.8),
-}
-"""The motions that may be proposed, by the words that the report uses for them."""
 
 STIFFER = "the same with servos of twice the stiffness and half the damping"
 """Words that the report uses for a motion with changed servo gains."""
@@ -60,20 +42,20 @@ def next_experiment(
     usage = Usage.of(plant, traces)
     place = next((p.place for p in rivals[0] if p.place in plant.joints), None)
     difference = {
-        name: _difference(plant, rivals, _trace(plant, usage, motion, traces[0]))
-        for name, motion in MOTIONS.items()
+        motion: _difference(plant, rivals, _trace(plant, usage, motion, traces[0]))
+        for motion in MOTIONS
     }
-    best = max(difference, key=lambda name: difference[name])
-    trace, motion, apart = traces[0], best, difference[best]
+    best = max(difference, key=lambda motion: difference[motion])
+    trace, words, apart = traces[0], best.words, difference[best]
     gains = {"kp_nm_rad": 2 * trace.servo.kp_nm_rad}
     gains["kd_nm_s_rad"] = 0.5 * trace.servo.kd_nm_s_rad
     trace = replace(trace, servo=replace(trace.servo, **gains))
-    stiffer = _difference(plant, rivals, _trace(plant, usage, MOTIONS[best], trace))
+    stiffer = _difference(plant, rivals, _trace(plant, usage, best, trace))
     if stiffer > 2 * apart:
-        motion, apart = f"{best}; {STIFFER}", stiffer
+        words, apart = f"{best.words}; {STIFFER}", stiffer
     names = [" and ".join(placed.key for placed in model) for model in rivals]
     why = f"there {names[0]} and {names[1]} differ by {1e3 * apart:.2g} mrad rms"
-    return NextExperiment(motion, place, why)
+    return NextExperiment(words, place, why)
 
 
 def _rivals(found: SearchResult) -> tuple[Model, Model] | None:
@@ -89,10 +71,10 @@ def _rivals(found: SearchResult) -> tuple[Model, Model] | None:
 
 def _trace(plant: Plant, usage: Usage, motion: Motion, like: Trace) -> Trace:
     """A trace in which all joints follow a motion within the range used so far."""
-    time_s = np.arange(0, DURATION_S, TICK_S)
+    time_s = np.arange(0, motion.duration_s, TICK_S)
     middle = (usage.low_rad + usage.high_rad) / 2
     half = REACH * (usage.high_rad - usage.low_rad) / 2
-    command = middle + half * motion(time_s, DURATION_S)[:, None]
+    command = middle + half * motion.shape(time_s, motion.duration_s)[:, None]
     return Trace("next", time_s, command, like.servo, command_rad=command)
 
 

@@ -30,6 +30,7 @@ class PayloadMass(NumberEffect, BodyEffect):
     """
 
     name = "payload_mass"
+    shown_by = "poses"
     native = True
     by_inverse_dynamics = True
     quantity = "body_mass"
@@ -66,6 +67,7 @@ class ComOffset(NumberEffect, BodyEffect):
     """
 
     name = "com_offset"
+    shown_by = "poses"
     native = True
     components = 3
     by_inverse_dynamics = True
@@ -107,6 +109,7 @@ class Drag(NumberEffect, BodyEffect):
     """
 
     name = "drag"
+    shown_by = "speeds"
     native = False
     at_tips = True
     rarity_nats = 3.0

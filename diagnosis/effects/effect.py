@@ -14,6 +14,7 @@ from diagnosis.effects.parts import (
     Parameter,
     PlaceKind,
     Values,
+    Variety,
 )
 from diagnosis.effects.places import joints_where
 from diagnosis.effects.variants import Variants
@@ -53,6 +54,10 @@ class Effect(ABC):
 
     place_kind: ClassVar[PlaceKind]
     """Kind of thing that the effect is attached to, such as "joint"."""
+
+    shown_by: ClassVar[Variety | None] = None
+    """What a joint's motion must have to show the effect as itself; None if any does.
+    Reports say so where recordings do not tell it from another effect."""
 
     replayed: ClassVar[bool] = True
     """Whether replays show the effect; False if only compared torques do."""

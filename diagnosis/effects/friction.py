@@ -33,6 +33,7 @@ class ViscousFriction(NumberEffect, JointEffect):
     """
 
     name = "viscous_friction"
+    shown_by = "speeds"
     native = True
     quantity = "dof_damping"
     words = EffectWords(
@@ -82,6 +83,7 @@ class CoulombFriction(NumberEffect, JointEffect):
     """
 
     name = "coulomb_friction"
+    shown_by = "reversals"
     native = True
     jumps = True
     quantity = "coulomb_nm"
@@ -118,6 +120,7 @@ class StribeckFriction(JointEffect):
     """
 
     name = "stribeck_friction"
+    shown_by = "speeds"
     native = False
     column_parameter = 1
     main_parameters = ("coulomb_torque", "extra_torque")
@@ -190,6 +193,7 @@ class LoadFriction(NumberEffect, JointEffect):
     """
 
     name = "load_friction"
+    shown_by = "poses"
     native = False
     scales_servo = True
     quantity = "load_share"

@@ -43,6 +43,7 @@ class Backlash(ServoEffect):
     """
 
     name = "backlash"
+    shown_by = "reversals"
     native = False
     finer = 4  # within a step teeth touch or not, and light joints rattle
     words = EffectWords(
@@ -91,6 +92,7 @@ class JointElasticity(JointEffect):
     """
 
     name = "joint_elasticity"
+    shown_by = "accelerations"
     native = False
     stiff = True
     finer = 2  # its motor oscillates too fast for whole steps

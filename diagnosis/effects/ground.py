@@ -76,6 +76,7 @@ class GroundSlope(Effect):
     """
 
     name = "ground_slope"
+    shown_by = "poses"
     place_kind = "world"
     native = True
     components = 2

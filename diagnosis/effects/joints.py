@@ -34,6 +34,7 @@ class Armature(NumberEffect, JointEffect):
     """
 
     name = "armature"
+    shown_by = "accelerations"
     native = True
     quantity = "dof_armature"
     words = EffectWords(
@@ -65,6 +66,7 @@ class EncoderOffset(NumberEffect, JointEffect):
     """
 
     name = "encoder_offset"
+    shown_by = "poses"
     native = False
     joint_by_joint = False
     of_motor = False
@@ -91,6 +93,7 @@ class JointSpring(JointEffect):
     """
 
     name = "joint_spring"
+    shown_by = "poses"
     native = True
     of_motor = False
     main_parameters = ("stiffness",)
@@ -148,6 +151,7 @@ class TorqueOffset(TorqueEffect):
     """
 
     name = "torque_offset"
+    shown_by = "poses"
     of_motor = False
     words = EffectWords(
         "constant torque",
@@ -185,6 +189,7 @@ class EndStop(JointEffect):
     """
 
     name = "end_stop"
+    shown_by = "poses"
     native = True
     threshold = True
     on_every_servo = False

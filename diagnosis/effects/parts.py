@@ -14,6 +14,9 @@ PlaceKind = Literal[
 """Kind of thing that an effect is attached to. A robot has several joints and bodies,
 but each of the other things once."""
 
+Variety = Literal["speeds", "reversals", "poses", "accelerations"]
+"""What a joint's motion must have much of to show an effect as itself."""
+
 Values = tuple[float, ...]
 """An effect's values in SI units, in the order of its parameters."""
 

@@ -60,6 +60,7 @@ class SensorDelay(NumberEffect):
     """
 
     name = "sensor_delay"
+    shown_by = "accelerations"
     place_kind = "encoders"
     native = False
     rarity_nats = 1.0

@@ -42,6 +42,7 @@ class ServoGain(NumberEffect, ServoEffect):
     """
 
     name = "servo_gain"
+    shown_by = "poses"
     native = True
     scales_servo = True
     stiffens = True
@@ -84,6 +85,7 @@ class ServoDamping(NumberEffect, JointEffect):
     """
 
     name = "servo_damping"
+    shown_by = "accelerations"
     native = True
     scales_servo = True
     rarity_nats = 2.0
@@ -196,6 +198,7 @@ class TorqueLimit(NumberEffect, JointEffect):
     """
 
     name = "torque_limit"
+    shown_by = "accelerations"
     native = True
     threshold = True
     quantity = "max_torque_nm"
@@ -240,6 +243,7 @@ class SpeedLimit(NumberEffect, ServoEffect):
     """
 
     name = "speed_limit"
+    shown_by = "speeds"
     native = False
     threshold = True
     quantity = "setpoint_speed_rad_s"
@@ -287,6 +291,7 @@ class CommandLatency(NumberEffect):
     """
 
     name = "command_latency"
+    shown_by = "accelerations"
     place_kind = "commands"
     native = True
     quantity = "command_delay_s"

@@ -317,6 +317,14 @@ class Predictor(Doubted):
             found[i : i + some] = self._doubts.without(self._errors(own, exactly), own)
         return found
 
+    def residual_of(self, errors: FloatArray) -> FloatArray:
+        """(N,) residual that errors (rows, c) [noise] of a right model leave.
+
+        The influence of wrong start states, and so on, is taken out of them.
+        """
+        wrong = np.where(self._scored, errors, 0.0)
+        return np.asarray(self._doubts.without(wrong[None], [()])[0])
+
     def _errors(self, models: Sequence[Model], exactly: bool) -> FloatArray:
         """(n, rows, c) measured less predicted values of n models [noise]."""
         predicted = self.exact(models) if exactly else self.predict(models)

@@ -56,6 +56,36 @@ def signatures(
     those in which effects may act that do not last.
     """
     trials = _trials(predictor, usage, intervals, names or tuple(all_effects()))
+    return _simulated(predictor, base, trials)
+
+
+def signatures_of(
+    predictor: Predictor, every: Sequence[PlacedEffect]
+) -> list[Signature]:
+    """Simulate given effects, as fast as is possible: kinds at all joints together.
+
+    That holds for limits and stops, too, which must be so mild that no joint collapses.
+    The signatures are in another order.
+    """
+    groups: dict[tuple[str, int], list[PlacedEffect]] = {}
+    seen: dict[str, int] = {}
+    for placed in every:
+        number = seen[placed.key] = seen.get(placed.key, -1) + 1
+        groups.setdefault((placed.name, number), []).append(placed)
+    trials: list[tuple[Model, bool]] = []
+    for (name, _), own in groups.items():
+        kind = effect(name)
+        if kind.place_kind == "joint" and kind.joint_by_joint and not kind.timed:
+            trials.append((tuple(own), True))
+        else:
+            trials += [((placed,), False) for placed in own]
+    return _simulated(predictor, (), trials)
+
+
+def _simulated(
+    predictor: Predictor, base: Model, trials: Sequence[tuple[Model, bool]]
+) -> list[Signature]:
+    """The signatures of effects that are added to a model, see `_trials`."""
     models = [base, *(base + added for added, _ in trials)]
     residuals = predictor.residuals(models)
     found = []

@@ -34,6 +34,17 @@ def places_of_effects(predictor: Predictor) -> int:
     return sum(len(one.places(predictor.plant, predictor.traces)) for one in kinds)
 
 
+def price(model: Model, rows: int) -> float:
+    """Gain [nats] that a model needs beyond that of effects with one value each.
+
+    More values, and start and end chosen freely among `rows` ones, fit more by chance.
+    """
+    timed = [one for one in model if effect(one.name).timed]
+    rarity = sum(effect(one.name).rarity_nats for one in model)
+    more = number_of_values(model) - len(groups_of(model))
+    return float(len(timed) * np.log(rows)) + VALUE_NATS * more + rarity
+
+
 class Judge:
     """Fits models on the fitting data and judges them on the selection data.
 
@@ -156,15 +167,8 @@ class Judge:
         return correlated * gain_of_noise(self.rules.finished)
 
     def price(self, model: Model) -> float:
-        """Gain [nats] that a model needs beyond that of effects with one value each.
-
-        More values, and start and end chosen freely, fit more by chance.
-        """
-        rows = sum(trace.ticks for trace in self.fit.traces)
-        timed = [one for one in model if effect(one.name).timed]
-        rarity = sum(effect(one.name).rarity_nats for one in model)
-        more = number_of_values(model) - len(groups_of(model))
-        return float(len(timed) * np.log(rows)) + VALUE_NATS * more + rarity
+        """Gain [nats] that a model needs beyond that of effects with one value each."""
+        return price(model, sum(trace.ticks for trace in self.fit.traces))
 
     def _matters(self, gain: float) -> bool:
         """Whether a gain [nats] is the share of the error that the user asks for."""

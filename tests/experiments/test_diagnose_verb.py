@@ -76,17 +76,6 @@ def test_a_diagnosis_writes_all_that_it_promises(recording, diagnosed):
         main(Diagnose((recording,), str(model), out=out))
 
 
-def test_an_audit_takes_no_search(recording, tmp_path, capsys, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    model = str(recording.with_name("swing.nominal.xml"))
-    main(Diagnose((recording.parent,), model, audit_only=True))
-    told = capsys.readouterr().out
-    assert "swing: 4 s, 100 rows a second, 1 of 1 joints move" in told
-    main(Diagnose((recording,), model, audit_only=True, json=True))
-    assert json.loads(capsys.readouterr().out)["traces"][0]["name"] == "swing"
-    assert list(tmp_path.iterdir()) == []
-
-
 @pytest.mark.slow
 def test_an_interrupted_diagnosis_is_resumed(
     recording, diagnosed, tmp_path, capsys, monkeypatch

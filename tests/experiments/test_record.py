@@ -81,3 +81,65 @@ def test_nothing_is_overwritten(tmp_path):
     path.write_text("mine")
     with pytest.raises(BadValueError, match="exists"):
         Record(out=path)
+
+
+def test_planned_motions_can_be_played_and_keep_the_limits(tmp_path, capsys):
+    main(Record(out=tmp_path / "motions", robot="pendulum", plan=True))
+    said = capsys.readouterr().out.splitlines()
+    files = sorted(path.name for path in (tmp_path / "motions").iterdir())
+    assert len(files) == 6
+    assert all(any(line.startswith(f"{name}: ") for line in said) for name in files)
+    played = tmp_path / "motions" / "reversals.csv"
+    recording = record(tmp_path / "a.parquet", play=played)
+    commands = np.loadtxt(played, delimiter=",", skiprows=1)
+    assert recording.duration_s == pytest.approx(16.0, abs=0.01)
+    sent = recording.joint_values("command", ["swing"])[:, 0]
+    assert sent == pytest.approx(commands[:, 1], abs=1e-6)
+    position = recording.joint_values("position", ["swing"])
+    assert (np.abs(position) < 3.0).all()
+    assert np.ptp(position) > 0.5
+
+
+def test_motions_are_planned_for_a_model_file(tmp_path, capsys):
+    record(tmp_path / "a.parquet")
+    model = str(tmp_path / "a.nominal.xml")
+    with pytest.raises(BadValueError, match="--kp"):
+        main(Record(out=tmp_path / "motions", robot=model, plan=True))
+    assert not (tmp_path / "motions").exists()
+    gains = {"kp": 8.0, "kd": 0.2, "max_torque": 4.0, "max_speed": 1.0}
+    main(Record(out=tmp_path / "motions", robot=model, plan=True, **gains))
+    sweeps = tmp_path / "motions" / "sweeps.csv"
+    table = np.loadtxt(sweeps, delimiter=",", skiprows=1)
+    speed = np.abs(np.diff(table[:, 1]) / np.diff(table[:, 0])).max()
+    assert 0.4 < speed < 0.52
+
+
+@pytest.mark.parametrize(
+    ("text", "says"),
+    [
+        ("time,command.elbow\n0,0\n1,1\n", "command.swing"),
+        ("time,command.swing\n0,0\n", "missing"),
+        ("time,command.swing\n0,0\n0,1\n", "forward"),
+        ("time,command.swing\n0,zero\n", "CSV"),
+        ("", "CSV"),
+    ],
+)
+def test_a_file_that_cannot_be_played_is_refused(tmp_path, text, says):
+    path = tmp_path / "play.csv"
+    path.write_text(text)
+    with pytest.raises(GroundwalkError, match=says):
+        record(tmp_path / "a.parquet", play=path)
+
+
+@pytest.mark.parametrize(
+    "options",
+    [
+        {"kp": 8.0},
+        {"max_speed": 1.0},
+        {"plan": True, "max_speed": 0.0},
+        {"robot": "nao", "motion": "walk", "play": "a.csv"},
+    ],
+)
+def test_options_of_plans_belong_to_plans(tmp_path, options):
+    with pytest.raises(BadValueError):
+        Record(out=tmp_path / "a.parquet", **({"robot": "pendulum"} | options))

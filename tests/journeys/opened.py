@@ -5,6 +5,7 @@ import xml.etree.ElementTree as ElementTree
 
 import PIL.Image
 
+from experiments.planned_files import read_planned
 from worlds import read_recording
 
 RERUN_MAGIC = b"RRF2"
@@ -37,6 +38,17 @@ def _recording(path):
     assert read_recording(path).duration_s > 0, path
 
 
+def _csv(path):
+    """A recording, or commands to play, which have no positions."""
+    header = path.read_text().partition("\n")[0]
+    if "position." in header:
+        _recording(path)
+        return
+    joints = [name.removeprefix("command.") for name in header.split(",")[1:]]
+    time_s, command_rad = read_planned(path, joints)
+    assert command_rad.shape == (len(time_s), len(joints)), path
+
+
 def _rerun(path):
     content = path.read_bytes()
     assert content.startswith(RERUN_MAGIC), path
@@ -54,7 +66,7 @@ def _text(path):
 
 OPENERS = {
     ".json": _json, ".html": _html, ".md": _markdown, ".png": _picture,
-    ".gif": _picture, ".parquet": _recording, ".csv": _recording, ".rrd": _rerun,
+    ".gif": _picture, ".parquet": _recording, ".csv": _csv, ".rrd": _rerun,
     ".urdf": _xml, ".xml": _xml, ".sha256": _text,
 }  # fmt: skip
 

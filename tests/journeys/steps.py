@@ -82,6 +82,7 @@ JOURNEYS: dict[str, dict[str, Step]] = {
         "backlash@LKneePitch:gap=0.03 --out air.parquet": Run(
             "--duration 3", writes=("air.parquet",)
         ),
+        "groundwalk check air.parquet --robot nao": Run(says="LKneePitch"),
         "groundwalk diagnose air.parquet --robot nao": Run(
             "--out runs/air", writes=below("runs/air", DIAGNOSED), says="verdict"
         ),
@@ -112,6 +113,25 @@ JOURNEYS: dict[str, dict[str, Step]] = {
             says="--population",
         ),
         "make bench": NotRun("minutes of timing", "make -n bench", says="benchmarks"),
+    },
+    "check.md": {
+        "groundwalk record --robot so101 --motion ramps --duration 20 "
+        "--out slow.parquet": Run("--duration 8", writes=("slow.parquet",)),
+        "groundwalk check slow.parquet --robot slow.nominal.urdf --out runs/slow": Run(
+            writes=below(
+                "runs/slow",
+                ("report.html", "result.json", "result.md", "next/slow_ramps.csv"),
+            ),
+            says="The smallest sizes that would be told",
+        ),
+        "groundwalk record --plan --robot so101 --out motions": Run(
+            writes=("motions/slow_ramps.csv", "motions/chirp.csv"), says="good for"
+        ),
+        "groundwalk record --robot so101 --play motions/slow_ramps.csv "
+        "--out ramps.parquet": Run(writes=("ramps.parquet",), says="2401 ticks"),
+        "groundwalk check slow.parquet ramps.parquet --robot slow.nominal.urdf": Run(
+            says="can be diagnosed"
+        ),
     },
     "concealed.md": {
         "groundwalk concealed make set": Run(

@@ -11,7 +11,7 @@ from known_arms import CHANNELS, LEAN, NOISE_RAD, measured
 from made_up_search import judged
 from made_up_traces import arm, recorded
 
-from diagnosis.conclude.estimates import smallest_detectable
+from diagnosis.conclude.smallest_sizes import smallest_detectable
 from diagnosis.effects.parts import PlacedEffect
 from diagnosis.residuals.predictor import Predictor
 from diagnosis.residuals.small_mismatch.usual_errors import is_usual
@@ -219,8 +219,9 @@ def test_what_acts_above_a_threshold_has_no_smallest_size():
         search.judge.fit, search.signatures, 4 * search.judge.least_gain
     )
     gain = "servo_gain@elbow"  # a smaller one is usual
-    assert sizes[gain].value == pytest.approx(0.09)
-    assert 0.09 <= more[gain].value < 0.18
+    usual = 1 - np.exp(-3 * 0.03)
+    assert sizes[gain].value == pytest.approx(usual)
+    assert usual <= more[gain].value < 0.18
     for key in ("viscous_friction@elbow", "backlash@elbow"):
         assert more[key].value == pytest.approx(2 * sizes[key].value)
 

@@ -1,0 +1,1 @@
+"""How the check of recordings is shown: tables and sentences, and a page."""
