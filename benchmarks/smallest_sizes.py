@@ -24,7 +24,7 @@ from scipy.stats import binomtest
 from diagnosis import Plant, Trace, diagnose, load_plant
 from diagnosis.check import check
 from diagnosis.check.result import Size
-from diagnosis.conclude.smallest_sizes import scaled
+from diagnosis.conclude.effect_sizes import scaled
 from diagnosis.effects import PlacedEffect, effect
 from diagnosis.effects.library import grown_from
 from diagnosis.traces.read import trace_of

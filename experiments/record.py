@@ -9,6 +9,7 @@ import numpy as np
 
 from diagnosis import load_plant
 from diagnosis.motions.plan import Limits, PlannedMotion, planned
+from experiments.check_report.words import CAREFUL
 from experiments.command_line import run_verb
 from experiments.concealed.motion import FLOATING_STEP_S, STEP_S, motion_feed
 from experiments.motions import MOTIONS
@@ -146,7 +147,7 @@ def main(config: Record) -> None:
         for one in plan_motions(config):
             motion = one.motion
             print(f"{motion.name}.csv: {motion.words}; good for {motion.good_for}")
-        print(f"wrote {config.out}")
+        print(f"wrote {config.out}; {CAREFUL}")
         return
     recording = make_recording(config)
     plant = config.plant()

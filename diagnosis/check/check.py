@@ -72,7 +72,7 @@ def check(
         audited = audit(traces, plant, reference.traces if reference else ())
         if not audited.refused:
             raise
-        return Check(audited, {}, (), (), (), np.inf)
+        return Check(audited, {}, (), (), (), None)
     plant, channels, audited = material.plant, material.channels, material.audited
     now = _sizes(plant, material.traces, channels, threads)
     sizes = tuple(_size(plant, one) for one in _in_order(plant, now.smallest))

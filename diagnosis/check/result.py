@@ -83,7 +83,7 @@ class Check:
       sizes: the smallest sizes that would be told.
       alike: effects that cannot be told apart.
       proposed: motions to record next, the most useful first.
-      gain: what an effect must gain to be reported [nats].
+      gain: what an effect must gain to be reported [nats]; None if not usable.
       limits: sentences on what was left out of the recordings, and on what was not
         computed.
     """
@@ -93,7 +93,7 @@ class Check:
     sizes: tuple[Size, ...]
     alike: tuple[Alike, ...]
     proposed: tuple[Proposed, ...]
-    gain: float
+    gain: float | None
     limits: tuple[str, ...] = ()
 
     @property

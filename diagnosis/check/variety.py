@@ -43,9 +43,7 @@ def lacking(
     plant: Plant, traces: Sequence[Trace], audited: Audit
 ) -> dict[str, tuple[Variety, ...]]:
     """What the motion of each joint lacks, by its name; joints at rest lack all."""
-    turns = {
-        one.name: one.reversals for trace in audited.traces for one in trace.joints
-    }
+    turns = dict.fromkeys(plant.joints, 0)
     for trace in audited.traces:
         for one in trace.joints:
             turns[one.name] = max(turns[one.name], one.reversals)

@@ -24,24 +24,27 @@ is four times as large, which is four standard deviations more.
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
 from diagnosis.conclude.answer import TIED_NATS
+from diagnosis.conclude.effect_sizes import (
+    SAME,
+    scaled,
+    size_of,
+    unit_of,
+    usual_size,
+)
 from diagnosis.conclude.nuisance_found import LITTLE
 from diagnosis.effects.library import effect, grown_from
-from diagnosis.effects.parts import Parameter, PlacedEffect
+from diagnosis.effects.parts import PlacedEffect
 from diagnosis.plant.plant import Plant
 from diagnosis.residuals.predictor import Predictor
 from diagnosis.residuals.signatures import Signature
-from diagnosis.residuals.small_mismatch.usual_errors import USUAL, far_of, value_at
 from diagnosis.search.judging import price
 from diagnosis.verdict import Amount
 from groundwalk.arrays import FloatArray
-
-SAME = 1e-6
-"""Share of a signature's square below which what is left of it is rounding."""
 
 
 @dataclass(frozen=True)
@@ -210,10 +213,10 @@ def _smallest(
             most, nearest, alike = wanted, other.placed, float(cosine)
     factors = [float(one ** (0.5 / k)) for one in (seen, max(seen, most))]
     largest = scaled(plant, placed, factors[1])
-    sizes = [_size(plant, placed, factor) for factor in factors]
-    usual = _usual(plant, largest)
+    sizes = [size_of(plant, placed, factor) for factor in factors]
+    usual = usual_size(plant, largest)
     is_usual = usual is not None and sizes[1] is not None and sizes[1] < usual
-    unit = _unit(plant, placed)
+    unit = unit_of(plant, placed)
     told, shown = (
         None if size is None else Amount(max(size, usual or 0.0), unit)
         for size in reversed(sizes)
@@ -260,72 +263,6 @@ def _cosines_squared(
             own = np.einsum("ki,ij,kj->k", wanted, inverse, wanted)
         cosines[:, number] = np.clip(own / power, 0.0, 1.0)
     return cosines
-
-
-def scaled(plant: Plant, placed: PlacedEffect, factor: float) -> PlacedEffect:
-    """The effect `factor` times as large, as far as it may be.
-
-    All values that say how large it is are scaled. One that acts beyond a threshold is
-    returned unchanged.
-    """
-    kind = effect(placed.name)
-    if kind.threshold:
-        return placed
-    every = kind.parameters(plant, placed.place)
-    names = kind.main_parameters or [one.name for one in every[: kind.components]]
-    values = list(placed.values)
-    for i, one in enumerate(every):
-        if one.name in names:
-            finite = np.isfinite(one.neutral)
-            far = factor * (values[i] - one.neutral) if finite else 0.0
-            value = one.neutral + far if finite else values[i] / max(factor, SAME)
-            values[i] = float(min(max(value, one.low), one.high))
-    return replace(placed, values=tuple(values))
-
-
-def _size(plant: Plant, placed: PlacedEffect, factor: float) -> float | None:
-    """The size of the effect `factor` times as large; None if it cannot be as large.
-
-    That is how far its first value is from the neutral one; of a vector its length; of
-    an effect that is absent at an infinite value, and of one with a threshold, the
-    value itself. The latter was tried at one size only, which is enough or not.
-    """
-    kind = effect(placed.name)
-    first = kind.parameters(plant, placed.place)[0]
-    if kind.threshold:
-        return abs(placed.values[0]) if factor <= 1 else None
-    sized = scaled(plant, placed, factor)
-    if _is_largest(first, factor, placed.values[0], sized.values[0]):
-        return None
-    if kind.components > 1:
-        return float(np.linalg.norm(sized.values[: kind.components]))
-    if not np.isfinite(first.neutral):
-        return abs(sized.values[0])
-    return abs(sized.values[0] - first.neutral)
-
-
-def _is_largest(first: Parameter, factor: float, tried: float, value: float) -> bool:
-    """Whether a value that was tried, times a factor, is more than is possible."""
-    if not np.isfinite(first.neutral):
-        return tried / factor < first.low
-    wanted = first.neutral + factor * (tried - first.neutral)
-    return abs(wanted - value) > SAME * abs(wanted - first.neutral)
-
-
-def _unit(plant: Plant, placed: PlacedEffect) -> str:
-    first = effect(placed.name).parameters(plant, placed.place)[0]
-    return plant.unit(first.unit, placed.place)
-
-
-def _usual(plant: Plant, placed: PlacedEffect) -> float | None:
-    """The largest size that counts as a usual error of a model; None if none does."""
-    kind = effect(placed.name)
-    first = kind.parameters(plant, placed.place)[0]
-    spread = kind.spread(plant, placed.place)
-    if not spread or kind.jumps:  # dry friction is missing, however little
-        return None
-    way = np.sign(far_of(first, placed.values[0])) or 1.0
-    return abs(value_at(first, float(way) * USUAL * spread) - first.neutral)
 
 
 def _is_smaller(plant: Plant, one: Smallest, other: Smallest) -> bool:

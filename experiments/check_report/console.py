@@ -2,6 +2,7 @@
 
 from diagnosis.check.result import Check
 from experiments.check_report.words import (
+    CAREFUL,
     NOISE,
     RECORDINGS,
     finding_lines,
@@ -38,5 +39,7 @@ def print_check(found: Check, is_written: bool) -> None:
     ):
         if said:
             print("", title, *(f"- {one}" for one in said), sep="\n")
+    if found.proposed:
+        print(f"\n{CAREFUL}")
     if found.proposed and not is_written:
-        print("\nWith --out FOLDER these motions are written as files to play.")
+        print("With --out FOLDER these motions are written as files to play.")

@@ -2,6 +2,7 @@
 
 from diagnosis.check.result import Check
 from experiments.check_report.words import (
+    CAREFUL,
     NOISE,
     RECORDINGS,
     finding_lines,
@@ -46,6 +47,7 @@ def write_page(folder: RunFolder, found: Check) -> None:
             body += [*markdown_table(*without_empty(columns, rows)), ""]
     body += _list("What cannot be told", lost_sentences(found))
     body += _list("What to record next", proposed_lines(found))
+    body += [CAREFUL, ""] if found.proposed else []
     question = "What can these recordings show, and what should be recorded next?"
     Report(question, answer, body, Origin.of_run(folder)).write(folder.path)
 

@@ -19,6 +19,11 @@ which ones are named is a matter of words, and nothing depends on it."""
 MOST_NAMED = 3
 """Most effects that are named as examples of what a motion helps."""
 
+CAREFUL = (
+    "The motions keep the model's limits of position, speed and torque. What the robot "
+    "may hit, its own links included, the model does not know: play them slowly first."
+)
+
 RECORDINGS = (
     "recording", "length", "rows a second", "jitter", "gaps", "joints that move",
 )  # fmt: skip

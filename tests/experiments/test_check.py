@@ -127,6 +127,11 @@ def test_a_recording_that_cannot_be_used_is_shown_and_refused(
     with pytest.raises(BadRecordingError, match="cannot be diagnosed"):
         main(CheckRecordings((path,), model, kp=8.0, kd=0.2, max_torque=4.0))
     assert "refuse: short lasts 0.29 s" in capsys.readouterr().out
+    with pytest.raises(BadRecordingError):
+        main(CheckRecordings((path,), model, kp=8.0, kd=0.2, json=True))
+    plain = json.loads(capsys.readouterr().out)
+    assert not plain["usable"]
+    assert plain["gain"] is None
 
 
 @pytest.mark.parametrize(

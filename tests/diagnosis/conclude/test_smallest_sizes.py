@@ -7,7 +7,8 @@ import pytest
 from made_up_traces import arm
 
 from diagnosis.conclude.answer import TIED_NATS
-from diagnosis.conclude.smallest_sizes import Demand, scaled, smallest_sizes
+from diagnosis.conclude.effect_sizes import scaled
+from diagnosis.conclude.smallest_sizes import Demand, smallest_sizes
 from diagnosis.effects import PlacedEffect, effect
 from diagnosis.residuals.signatures import Signature
 from diagnosis.search.result import VALUE_NATS
