@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from diagnosis.audit.audit import audit
-from diagnosis.check.evidence import Sizes, evidence_of, tries_of
+from diagnosis.check.evidence import LEAST_S, Sizes, evidence_of, tries_of
 from diagnosis.check.next_motions import next_motions
 from diagnosis.check.result import Alike, Check, Size
 from diagnosis.check.variety import lacking, why_alike
@@ -97,7 +97,7 @@ def _sizes(
 ) -> Sizes:
     """How large effects must be to be told, from the part that would be fitted."""
     fit = affordable(plant, split(traces)).fit
-    some = thinned(plant, shortened(fit, SIMULATED_S), len(channels.names))
+    some = thinned(plant, shortened(fit, SIMULATED_S, LEAST_S), len(channels.names))
     lasted_s = [sum(one.duration_s for one in every) for every in (fit, some)]
     predictor = predictor_of(plant, some, channels, threads=threads)
     weight = lasted_s[0] / max(lasted_s[1], 1e-9)

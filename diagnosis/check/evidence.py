@@ -28,6 +28,10 @@ from groundwalk.arrays import FloatArray
 SEED = 20_260_202
 """Seed of the drawn noise: the same recordings always give the same sizes."""
 
+LEAST_S = 1.0
+"""Time [s] that is simulated at least of each recording: more than twice that in which
+a wrong start state counts."""
+
 NEAR = 1.2
 """An effect is simulated again if the size that would be told is by this factor larger
 or smaller than that which was tried; nearer by, changes are proportional enough."""

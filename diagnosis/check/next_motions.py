@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from diagnosis.check.evidence import Sizes, evidence_of
+from diagnosis.check.evidence import LEAST_S, Sizes, evidence_of
 from diagnosis.check.result import Proposed
 from diagnosis.conclude.smallest_sizes import Smallest
 from diagnosis.motions.plan import RATE_HZ, Limits, PlannedMotion, planned
@@ -41,7 +41,7 @@ def next_motions(
     if not motions:
         return []
     whole = [one.trace for one in motions]
-    some = shortened(whole, SIMULATED_S)
+    some = shortened(whole, SIMULATED_S, LEAST_S)
     predictor = Predictor(plant, some, _positions(channels, plant), threads=threads)
     lasted_s = [sum(one.duration_s for one in every) for every in (whole, some)]
     weight = FITTED * lasted_s[0] / lasted_s[1]
