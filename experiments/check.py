@@ -13,7 +13,7 @@ from diagnosis.traces.trace import DriveBy
 from experiments.check_report.console import print_check
 from experiments.check_report.page import write_page
 from experiments.command_line import run_verb
-from experiments.diagnose import Diagnose, read_all
+from experiments.diagnose import Diagnose, read_all, with_model
 from experiments.planned_files import write_planned
 from experiments.reports.report import REPORT
 from experiments.reports.tables import print_folder
@@ -36,9 +36,11 @@ class CheckRecordings:
     Attributes:
       recordings: Parquet or CSV files (docs/recordings.md), or folders of them.
       robot: name of a robot, a model file (.xml or .urdf), or a robot of
-        example-robot-data.
+        example-robot-data; by default the model that the recordings state.
       reference: recordings of the same robot while it was healthy.
       reference_robot: model of the robot as it was then, if it has another one now.
+      servo: type of all servos, such as sts3215@7.4V,P=16, for recordings that do not
+        state it; `groundwalk list servos` shows the types.
       kp: stiffness of all servos [N m/rad], for recordings that do not state it.
       kd: damping of all servos [N m s/rad], for recordings that do not state it.
       max_torque: torque limit of all servos [N m], for recordings that do not state it.
@@ -51,7 +53,7 @@ class CheckRecordings:
       json: print the result as JSON.
 
     Example:
-      >>> check_recordings(CheckRecordings((Path("a.parquet"),), "so101")).usable
+      >>> CheckRecordings((Path("a.parquet"),), "so101").max_speed
     """
 
     recordings: Annotated[
@@ -60,6 +62,7 @@ class CheckRecordings:
     robot: str = ""
     reference: Annotated[tuple[Path, ...], tyro.conf.arg(metavar="RECORDING...")] = ()
     reference_robot: str = ""
+    servo: str = ""
     kp: float | None = None
     kd: float | None = None
     max_torque: float | None = None
@@ -83,10 +86,11 @@ class CheckRecordings:
             self.robot,
             self.reference,
             self.reference_robot,
-            self.kp,
-            self.kd,
-            self.max_torque,
-            self.drive,
+            servo=self.servo,
+            kp=self.kp,
+            kd=self.kd,
+            max_torque=self.max_torque,
+            drive=self.drive,
             threads=self.threads,
         )
 
@@ -107,9 +111,14 @@ def main(config: CheckRecordings) -> None:
 
 
 def check_recordings(config: CheckRecordings) -> Check:
-    """Check recordings; nothing is written."""
+    """Check recordings; nothing is written.
+
+    Example:
+      >>> check_recordings(CheckRecordings((Path("a.parquet"),))).usable
+      True
+    """
     check_free(config.out)
-    plant, traces, reference = read_all(config.asked)
+    plant, traces, reference = read_all(with_model(config.asked))
     own = reference, config.drive, config.threads, config.max_speed
     return check(plant, traces, *own)
 

@@ -149,7 +149,7 @@ def run_diagnosis(config: Diagnose) -> tuple[RunFolder, Verdict]:
     """
     check_free(config.out)
     # recordings that cannot be read are refused before a folder is made
-    config = _with_robot(config)
+    config = with_model(config)
     read = None if config.resume else read_all(config)
     folder, config = open_run(VERB, config)
     checkpoint = CheckpointFiles(folder.path / STAGES)
@@ -165,7 +165,7 @@ def run_diagnosis(config: Diagnose) -> tuple[RunFolder, Verdict]:
     return folder, found.verdict
 
 
-def _with_robot(config: Diagnose) -> Diagnose:
+def with_model(config: Diagnose) -> Diagnose:
     """The options with the model to use; says if it is another than recordings state.
 
     A resumed run has its own model.

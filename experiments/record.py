@@ -66,6 +66,7 @@ class Record:
         `groundwalk check` write them.
       plan: write motions that excite all physics and keep the limits of a model: that
         of a robot's name, or of a file (.xml, .urdf).
+      servo: with --plan, type of all servos, such as sts3215@7.4V,P=16.
       kp: with --plan, stiffness of all servos [N m/rad], if the model states none.
       kd: with --plan, damping of all servos [N m s/rad].
       max_torque: with --plan, torque limit of all servos [N m].
@@ -86,6 +87,7 @@ class Record:
     seed: int = 1
     play: Path | None = None
     plan: bool = False
+    servo: str = ""
     kp: float | None = None
     kd: float | None = None
     max_torque: float | None = None
@@ -94,7 +96,7 @@ class Record:
     def __post_init__(self) -> None:
         """Refuse invalid options before anything is computed."""
         check_new(self.out)
-        gains = servo_gains(self.kp, self.kd, self.max_torque)
+        gains = servo_gains(self.kp, self.kd, self.max_torque, self.servo)
         if self.plan:
             if self.max_speed is not None and not self.max_speed > 0:
                 raise BadValueError(
@@ -102,7 +104,9 @@ class Record:
                 )
             return
         if gains is not None or self.max_speed is not None:
-            raise BadValueError("kp, kd, max_torque and max_speed belong to --plan")
+            raise BadValueError(
+                "servo, kp, kd, max_torque and max_speed belong to --plan"
+            )
         if self.out.suffix.lower() not in (".parquet", ".csv"):
             raise BadValueError(f"out is {self.out}; a recording is .parquet or .csv")
         if not 0.1 <= self.duration <= _LONGEST_S:
@@ -165,7 +169,7 @@ def plan_motions(config: Record) -> list[PlannedMotion]:
     Example:
       >>> plan_motions(Record(Path("motions"), robot="nao", plan=True))
     """
-    gains = servo_gains(config.kp, config.kd, config.max_torque)
+    gains = servo_gains(config.kp, config.kd, config.max_torque, config.servo)
     with tempfile.TemporaryDirectory() as folder:
         source: str | Path = config.robot
         if config.robot in OWN_MODELS:

@@ -138,7 +138,6 @@ def test_a_recording_that_cannot_be_used_is_shown_and_refused(
     ("options", "says"),
     [
         ({"recordings": ()}, "no recording"),
-        ({"robot": ""}, "no robot"),
         ({"max_speed": 0.0}, "max_speed"),
         ({"kd": 0.1}, "kp"),
         ({"threads": -1}, "threads"),

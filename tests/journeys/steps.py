@@ -117,7 +117,7 @@ JOURNEYS: dict[str, dict[str, Step]] = {
     "check.md": {
         "groundwalk record --robot so101 --motion ramps --duration 20 "
         "--out slow.parquet": Run("--duration 8", writes=("slow.parquet",)),
-        "groundwalk check slow.parquet --robot slow.nominal.urdf --out runs/slow": Run(
+        "groundwalk check slow.parquet --out runs/slow": Run(
             writes=below(
                 "runs/slow",
                 ("report.html", "result.json", "result.md", "next/slow_ramps.csv"),
@@ -129,9 +129,7 @@ JOURNEYS: dict[str, dict[str, Step]] = {
         ),
         "groundwalk record --robot so101 --play motions/slow_ramps.csv "
         "--out ramps.parquet": Run(writes=("ramps.parquet",), says="2401 ticks"),
-        "groundwalk check slow.parquet ramps.parquet --robot slow.nominal.urdf": Run(
-            says="can be diagnosed"
-        ),
+        "groundwalk check slow.parquet ramps.parquet": Run(says="can be diagnosed"),
     },
     "concealed.md": {
         "groundwalk concealed make set": Run(
