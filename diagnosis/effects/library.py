@@ -5,7 +5,16 @@ from collections.abc import Iterator, Mapping, Sequence
 from contextvars import ContextVar
 from types import MappingProxyType
 
-from diagnosis.effects import bodies, friction, gears, ground, joints, sensors, servos
+from diagnosis.effects import (
+    bodies,
+    friction,
+    gears,
+    ground,
+    joints,
+    presliding,
+    sensors,
+    servos,
+)
 from diagnosis.effects.effect import Effect
 from diagnosis.effects.parts import PlacedEffect
 from diagnosis.traces.trace import Trace
@@ -19,6 +28,7 @@ BUILT_IN: Mapping[str, Effect] = MappingProxyType(
             friction.CoulombFriction(),
             friction.StribeckFriction(),
             friction.LoadFriction(),
+            presliding.Presliding(),
             gears.Backlash(),
             gears.JointElasticity(),
             servos.CommandLatency(),

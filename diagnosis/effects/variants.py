@@ -43,6 +43,8 @@ class Joints:
       offset_rad: measured minus true position; the servo acts on the measured one.
       stribeck_nm: extra dry friction at standstill.
       stribeck_speed_rad_s: speed at which the extra friction has dropped to 37 %.
+      slip_nm: dry friction whose springs have all slipped, see `replay.presliding`.
+      slip_rad: angle by which the last of its springs bends before it slips.
       load_share: dry friction as a share of the motor's torque, back-EMF included.
       spring_nm_rad: stiffness between motor and joint; infinite for a rigid gear.
       torque_factor: measured torque over the true one, where torques are compared.
@@ -62,6 +64,8 @@ class Joints:
     coulomb_nm: FloatArray
     stribeck_nm: FloatArray
     stribeck_speed_rad_s: FloatArray
+    slip_nm: FloatArray
+    slip_rad: FloatArray
     load_share: FloatArray
     spring_nm_rad: FloatArray
     spring_damping_nm_s_rad: FloatArray

@@ -9,7 +9,7 @@ they did.
 
 import copy
 from collections import OrderedDict
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from operator import attrgetter
 
 import mujoco
@@ -18,6 +18,7 @@ from scipy.interpolate import CubicSpline
 
 from diagnosis.effects.variants import Variants
 from diagnosis.plant.plant import Plant, inverse_dynamics
+from diagnosis.replay.presliding import torque_along
 from diagnosis.replay.servos import dry_friction_nm
 from diagnosis.traces.trace import Trace
 from groundwalk.arrays import FloatArray
@@ -58,6 +59,7 @@ class NeededTorques:
         )
         times = [trace.time_s[own] for trace, own in zip(traces, rows, strict=True)]
         self._time_s = np.concatenate(times)
+        self._earlier = [_earlier_rad(trace) for trace in traces]
         ends = np.cumsum([len(own) for own in rows])
         self._parts = [slice(e - len(r), e) for e, r in zip(ends, rows, strict=True)]
         self._kept: OrderedDict[tuple[bytes, ...], FloatArray] = OrderedDict()
@@ -89,6 +91,7 @@ class NeededTorques:
             every = np.broadcast_to(values[row], (len(torque), *values[row].shape))
             time_s = self._time_s[:, None]
             torque -= effect.torque_nm(every, position, self._velocity, time_s)
+        torque += self._bending(joints)
         loss = variants.fields.get("dof_frictionloss")
         dry = self._plant.model.dof_frictionloss if loss is None else loss[row]
         dry = dry[self._plant.dofs] + joints["coulomb_nm"]
@@ -135,6 +138,18 @@ class NeededTorques:
         ]
         return np.asarray(torque + springs[1] - springs[0])
 
+    def _bending(self, joints: Mapping[str, FloatArray]) -> FloatArray | float:
+        """(rows, j) torques of friction that bends first; 0.0 without any."""
+        own = np.flatnonzero(joints["slip_nm"])
+        if not own.size:
+            return 0.0
+        torque = np.zeros_like(self._position)
+        law = joints["slip_nm"][own], joints["slip_rad"][own]
+        for rows, earlier in zip(self._parts, self._earlier, strict=True):
+            before = None if earlier is None else earlier[:, own]
+            torque[rows, own] = torque_along(*law, self._position[rows][:, own], before)
+        return torque
+
     def _outside(self, variants: Variants, row: int) -> FloatArray | float:
         """(rows, j) torques against pushes and drag; 0.0 without any."""
         torque: FloatArray | float = 0.0
@@ -176,6 +191,14 @@ class NeededTorques:
             later = np.minimum(time_s + late_s, time_s[-1])
             torque[rows] = CubicSpline(time_s, torque[rows])(later)
         return torque
+
+
+def _earlier_rad(trace: Trace) -> FloatArray | None:
+    """(rows, j) smoothed positions just before a part of a recording, if known."""
+    before = trace.before
+    if before is None or before.motion is None:
+        return None
+    return before.motion.position_rad
 
 
 def _stacked(parts: Sequence[FloatArray]) -> FloatArray:

@@ -8,6 +8,7 @@ import numpy as np
 from diagnosis.effects.variants import Variants
 from diagnosis.plant.servo import Servo
 from diagnosis.replay.outside import OutsideForces
+from diagnosis.replay.presliding import BatchPresliding
 from diagnosis.replay.servos import (
     BatchFriction,
     BatchServos,
@@ -62,10 +63,13 @@ class BatchLaws:
         self._stiff = np.isinf(joints["spring_nm_rad"])
         loose = bool(joints["gap_rad"].any())
         self._gaps = BatchGaps(joints, self._servos.law, step_s) if loose else None
+        bends = bool(joints["slip_nm"].any())
+        self._presliding = BatchPresliding(joints, step_s) if bends else None
         self._torques = [
             (effect, np.repeat(values, runs, axis=0))
             for effect, values in variants.torques.items()
         ]
+        self._adds = bends or bool(self._torques)
         self._setpoint: FloatArray | None = None
         # bind before the first step: a later view would lag by one step
         self._force = self._bind("actuator_force")
@@ -73,17 +77,24 @@ class BatchLaws:
         self.outside = OutsideForces(batch, variants, runs, step_s)
         self._elastic: ElasticJoints | None = None
 
-    def begin(self, asked_rad: FloatArray | None = None) -> None:
+    def begin(
+        self,
+        asked_rad: FloatArray | None = None,
+        before_rad: Sequence[FloatArray | None] = (),
+    ) -> None:
         """Begin, or begin again, in the state that the simulations are in.
 
         `asked_rad` are the (n R, j) position targets so far; None for those of the
-        first step.
+        first step. `before_rad` has for each run its joints' motion (rows, j) up to its
+        start, which friction remembers; None where nothing is known.
         """
         self._setpoint = None
         if asked_rad is not None:
             self._setpoint = asked_rad - self.joints["offset_rad"]
         if self._gaps is not None:
             self._gaps.begin()
+        if self._presliding is not None:
+            self._presliding.begin(before_rad)
         self.outside.begin()
         is_first = self._elastic is None
         if np.isfinite(self.joints["spring_nm_rad"]).any():
@@ -119,7 +130,7 @@ class BatchLaws:
         if self._gaps is not None:
             asked_rad, free_nm = self._gaps.through(asked_rad, position, velocity)
             self._applied[:, self._dofs] = free_nm
-        if self._torques:
+        if self._adds:
             already = 0.0 if self._gaps is None else self._applied[:, self._dofs]
             own_nm = self._own_nm(position, velocity, time_s)
             self._applied[:, self._dofs] = already + own_nm
@@ -150,13 +161,13 @@ class BatchLaws:
             torque_nm = np.where(self._elastic.soft, 0.0, torque_nm)
         if self._friction.varies:
             self._rub(velocity, torque_nm)
-        if self._torques:
+        if self._adds:
             torque_nm = torque_nm + self._own_nm(position, velocity, time_s)
         self._applied[:, self._dofs] = torque_nm
 
     def add_to_joints(self, torque_nm: FloatArray) -> None:
         """Add (n R, j) torques [N m] to those of the servos; call `servo` before."""
-        set_before = self._gaps is not None or bool(self._torques)
+        set_before = self._gaps is not None or self._adds
         already = self._applied[:, self._dofs] if set_before else 0.0
         self._applied[:, self._dofs] = already + torque_nm
 
@@ -182,12 +193,17 @@ class BatchLaws:
     def _own_nm(
         self, position: FloatArray, velocity: FloatArray, time_s: FloatArray
     ) -> FloatArray:
-        """(n R, j) sum of the torques [N m] that each `TorqueEffect` computes."""
+        """(n R, j) torques [N m] of each `TorqueEffect` and of presliding friction."""
         times_s = np.tile(time_s, len(position) // len(time_s))[:, None]
         torques = [
             effect.torque_nm(values, position, velocity, times_s)
             for effect, values in self._torques
         ]
+        if self._presliding is not None:
+            own = self._servos.inertia_kg_m2, self._servos.damping_nm_s_rad
+            bending_nm, damping = self._presliding.step(position, velocity, *own)
+            self._servos.damp_more(damping)
+            torques.append(bending_nm)
         return np.asarray(sum(torques, np.zeros_like(velocity)))
 
     def _bind(self, name: str) -> FloatArray:

@@ -101,7 +101,7 @@ class ReplayBatch:
         servos = [_servo(run.trace) for run in runs]
         self.laws = BatchLaws(self._batch, variants, servos, step_s)
         self._start(runs, variants)
-        self.laws.begin()
+        self.laws.begin(before_rad=[run.before_rad for run in runs])
 
     def step(self) -> None:
         """Take one step of physics; a simulation that diverges gets NaN positions."""

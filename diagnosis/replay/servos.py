@@ -86,21 +86,37 @@ class BatchServos:
         model = plant.model
         diagonal = model.M_rowadr + model.M_rownnz - 1
         self._mass = np.asarray(batch.bind("M")), diagonal[self._dofs]
+        self._more = np.zeros_like(kp)
         # limits of the next step, and whether actuators' present ones are not `_limit`
         self._least_limit, self._changed = self._limit, False
 
     @property
     def damping_nm_s_rad(self) -> FloatArray:
-        """(rows, j) sum of servo damping, back-EMF and the joint's own damping."""
-        return np.asarray(self.law["kd"] + self._damping[:, self._dofs])
+        """(rows, j) sum of servo damping, back-EMF and the joint's own damping.
+
+        Not that of `damp_more`.
+        """
+        own = self._damping[:, self._dofs] - self._more
+        return np.asarray(self.law["kd"] + own)
+
+    @property
+    def inertia_kg_m2(self) -> FloatArray:
+        """(rows, j) inertia at each joint with all others held, as of the last step."""
+        mass, diagonal = self._mass
+        return np.asarray(mass[:, diagonal])
+
+    def damp_more(self, damping_nm_s_rad: FloatArray) -> None:
+        """Damp the joints in the next step by (rows, j) more than their own damping."""
+        own = self._damping[:, self._dofs] - self._more
+        self._damping[:, self._dofs] = own + damping_nm_s_rad
+        self._more = damping_nm_s_rad
 
     def held_from_nm(self) -> FloatArray:
         """(rows, j) torque [N m] from which on a servo saturates in all of a step.
 
         One whose torque is below leaves saturation within the step: see `limit`.
         """
-        mass, diagonal = self._mass
-        inertia = mass[:, diagonal] + self._step_s * self._damping[:, self._dofs]
+        inertia = self.inertia_kg_m2 + self._step_s * self._damping[:, self._dofs]
         return np.asarray(self._limit * (1 + self._step_s * self.law["kd"] / inertia))
 
     def equal(

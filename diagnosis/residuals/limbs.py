@@ -44,6 +44,7 @@ class Limb:
             position_rad=run.position_rad[columns],
             velocity_rad_s=run.velocity_rad_s[columns],
             whole=run.whole and run.whole.of(columns),
+            before_rad=None if run.before_rad is None else run.before_rad[:, columns],
         )
 
     def channels(self, whole: Channels) -> tuple[Channels, list[int]]:

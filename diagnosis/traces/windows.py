@@ -13,6 +13,10 @@ HEAD_ROWS = 60
 """Number of rows at a trace's start that are smoothed, with those before it if it is a
 part, to get its start state."""
 
+REMEMBERED_ROWS = 500
+"""Most rows before a window from which follows what its joints' friction remembers. All
+that was before a way of twice friction's reach in one direction is forgotten."""
+
 UNHELD_WINDOW_S = 0.5
 """Duration [s] after which a replay starts again from the measured state, for joints
 without servos: nothing else keeps its errors from growing."""
@@ -43,6 +47,8 @@ class Run:
       whole: the trace of which `trace` is a window, with what was recorded before; None
         if `trace` is all. Commands from before a window may still act in it if they
         take effect late.
+      before_rad: (rows, j) smoothed positions just before the start and at it, which
+        friction remembers; None if nothing was recorded before.
     """
 
     trace: Trace
@@ -50,6 +56,7 @@ class Run:
     velocity_rad_s: FloatArray
     base: FloatArray | None = None
     whole: Trace | None = None
+    before_rad: FloatArray | None = None
 
     @classmethod
     def of(cls, trace: Trace) -> "Run":
@@ -62,7 +69,13 @@ class Run:
         head = slice(0, first + HEAD_ROWS)
         smoothed = smooth_columns(led.time_s[head], led.position_rad[head])
         whole = led if first else None
-        return cls(trace, smoothed.value[first], smoothed.rate[first], whole=whole)
+        return cls(
+            trace,
+            smoothed.value[first],
+            smoothed.rate[first],
+            whole=whole,
+            before_rad=_before(smoothed.value, first),
+        )
 
 
 def window_s(plant: Plant, trace: Trace) -> float | None:
@@ -105,9 +118,15 @@ def runs_of(plant: Plant, trace: Trace, least_s: float = 0.0) -> list[Run]:
             velocity[first],
             None if base is None else base[first],
             led,
+            _before(smoothed.value, more + int(first)),
         )
         for first, last in zip(starts, ends, strict=True)
     ]
+
+
+def _before(position_rad: FloatArray, row: int) -> FloatArray | None:
+    """The last of (T, j) positions before a row, with its own; None at the start."""
+    return position_rad[max(row - REMEMBERED_ROWS, 0) : row + 1] if row else None
 
 
 def _bases(trace: Trace) -> FloatArray:

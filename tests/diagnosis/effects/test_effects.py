@@ -21,6 +21,7 @@ PARAMETERS = {
     "coulomb_friction": "torque",
     "stribeck_friction": "coulomb_torque extra_torque speed",
     "load_friction": "share",
+    "presliding": "torque reach",
     "backlash": "gap",
     "joint_elasticity": "stiffness damping",
     "command_latency": "delay",
