@@ -40,6 +40,36 @@ class _Delay:
         self.values.extend([value] * (self.values.maxlen or 0))
 
 
+class _LateReadings:
+    """Positions and velocities (n, j) as encoders report them, each joint as late."""
+
+    def __init__(self, late_s: FloatArray, step_s: float) -> None:
+        """Prepare for delays (j,) of the joints."""
+        steps = np.maximum(late_s, 0.0) / step_s
+        self._back, self._step_s = steps.astype(int), step_s
+        self._since = 1 - (steps - self._back)
+        self._columns = np.arange(len(late_s))
+        rows = int(self._back.max()) + 2
+        self._values: deque[tuple[FloatArray, FloatArray]] = deque(maxlen=rows)
+
+    def begin(self, now: tuple[FloatArray, FloatArray]) -> None:
+        """Start as if the joints had always been where they are now."""
+        self._values.extend([now] * (self._values.maxlen or 0))
+
+    def append(self, now: tuple[FloatArray, FloatArray]) -> None:
+        """Take positions and velocities (n, j) after one more step."""
+        self._values.append(now)
+
+    def read(self) -> tuple[FloatArray, FloatArray]:
+        """Positions and velocities (n, j) that are reported now."""
+        last = len(self._values) - 1 - self._back
+        every = [np.stack(one) for one in zip(*self._values, strict=True)]
+        ends = [
+            [one[at, :, self._columns].T for one in every] for at in (last - 1, last)
+        ]
+        return hermite(ends[0], ends[1], self._step_s, self._since)
+
+
 def sim_plant(
     description: Description, options: WorldOptions, grounds: Sequence[Heightfield] = ()
 ) -> Plant:
@@ -112,7 +142,7 @@ class CorrectedSim(SimWorld):
         self._laws = BatchLaws(batch, variants, [plant.servo], step_s)
         signals = variants.signals
         self._commands = _Delay(float(signals.command_delay_s[0]), step_s)
-        self._encoders = _Delay(float(signals.sensor_delay_s[0]), step_s)
+        self._encoders = _LateReadings(variants.late_s[0], step_s)
         self._gyro_bias_rad_s = signals.gyro_bias_rad_s
         return batch
 
@@ -137,7 +167,7 @@ class CorrectedSim(SimWorld):
                 self._laws.outside.apply(now_s)
                 self._run(1)
                 self._steps += 1
-                self._encoders.values.append(self._measured(self._laws))
+                self._encoders.append(self._measured(self._laws))
 
     @staticmethod
     def _measured(laws: BatchLaws) -> tuple[FloatArray, FloatArray]:
@@ -149,9 +179,7 @@ class CorrectedSim(SimWorld):
         truth, observation = super()._read()
         if self._laws is None:
             return truth, observation
-        older, newer, *_ = self._encoders.values
-        since = 1 - self._encoders.share
-        position, velocity = hermite(older, newer, self.options.timestep_s, since)
+        position, velocity = self._encoders.read()
         return truth, replace(
             observation,
             position_rad=position + self._laws.joints["offset_rad"],

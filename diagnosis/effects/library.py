@@ -33,6 +33,7 @@ BUILT_IN: Mapping[str, Effect] = MappingProxyType(
             gears.JointElasticity(),
             servos.CommandLatency(),
             sensors.SensorDelay(),
+            sensors.LateReading(),
             joints.EncoderOffset(),
             sensors.GyroBias(),
             servos.TorqueLimit(),

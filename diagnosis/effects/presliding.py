@@ -15,7 +15,7 @@ rad, to geared servos, 0.1 rad, none is further from one of them than a fit goes
 
 
 class Presliding(JointEffect):
-    """Dry friction whose contacts bend like springs, one after the other, until all slip.
+    """Dry friction whose contacts bend like springs until, one by one, they slip.
 
     Eight springs of one stiffness in parallel slip at 1/8, 2/8 ... of the `reach`; the
     `torque` is that of long sliding. After each turn the torque goes over from one side
@@ -62,7 +62,7 @@ class Presliding(JointEffect):
         return []
 
     def grown_from(self, other: PlacedEffect) -> tuple[PlacedEffect, ...]:
-        """Presliding friction to try after dry friction: as large, with some reaches."""
+        """Presliding friction to try after dry friction: as large, some reaches."""
         if other.name != "coulomb_friction":
             return ()
         (torque,) = other.values

@@ -84,6 +84,45 @@ class SensorDelay(NumberEffect):
         return ("encoders",) if plant.base == "floating" or other else ()
 
 
+class LateReading(NumberEffect, JointEffect):
+    """One joint is read later than others: measured(t) = true(t - delay) at this joint.
+
+    The servo acts on its own, fresh reading. A bus that asks one servo after the other
+    takes 0.2 to 5 ms for each.
+
+    On a fixed base time is only known from the commands: if all joints are read late,
+    commands that take effect late look the same, so that the least of all delays is
+    `command_latency`, and what this effect says is later than that. A command that one
+    servo alone gets late looks the same, too, but for what its joint does to others,
+    which hardly shows where servos are stiff.
+
+    Source: round-robin polling, as in the protocols of Dynamixel and Feetech servos;
+    transfer function exp(-s delay), Astrom and Murray 2008, "Feedback systems".
+    """
+
+    name = "late_reading"
+    native = False
+    of_motor = False
+    rarity_nats = 1.0
+    quantity = "late_s"
+    usual = (Parameter("delay", "s", 0.0, 0.2, 0.0, 0.005),)
+    words = EffectWords(
+        "late reading of one joint",
+        "the position of {joint} is read {delay} later than its time stamp says",
+        "Servos on one bus are asked one after the other, and a row of the recording "
+        "has one time for all of them.",
+    )
+
+    def places(self, plant: Plant, traces: Sequence[Trace]) -> tuple[str, ...]:
+        """Names of all joints, if there are several; () where servos' torques count.
+
+        A single joint that is read late looks like late commands. And where servos'
+        torques are compared, they follow from the readings.
+        """
+        alone = len(plant.joints) < 2
+        return () if alone or asked(traces) else super().places(plant, traces)
+
+
 class GyroBias(NumberEffect):
     """A constant error of the gyroscope: measured = true + bias, in the sensor frame.
 

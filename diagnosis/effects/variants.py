@@ -41,6 +41,8 @@ class Joints:
       gap_rad: total play between servo and joint; no torque passes within it.
       compliance_rad_nm: by how much gears with play yield per torque that passes.
       offset_rad: measured minus true position; the servo acts on the measured one.
+      late_s: time by which the joint's reading is older than other joints'; the servo
+        acts on its own, fresh one.
       stribeck_nm: extra dry friction at standstill.
       stribeck_speed_rad_s: speed at which the extra friction has dropped to 37 %.
       slip_nm: dry friction whose springs have all slipped, see `replay.presliding`.
@@ -61,6 +63,7 @@ class Joints:
     gap_rad: FloatArray
     compliance_rad_nm: FloatArray
     offset_rad: FloatArray
+    late_s: FloatArray
     coulomb_nm: FloatArray
     stribeck_nm: FloatArray
     stribeck_speed_rad_s: FloatArray
@@ -130,6 +133,11 @@ class Variants:
         )
         self.fields: dict[str, FloatArray] = {}
         self.torques: dict[TorqueEffect, FloatArray] = {}
+
+    @property
+    def late_s(self) -> FloatArray:
+        """(n, j) time [s] by which each joint's reading is older than it says."""
+        return self.signals.sensor_delay_s[:, None] + self.joints.late_s
 
     def field(self, name: str) -> FloatArray:
         """(n, ...) values of a field in `mujoco.batch.MODEL_FIELDS`, to be changed."""

@@ -11,6 +11,7 @@ import copy
 from collections import OrderedDict
 from collections.abc import Mapping, Sequence
 from operator import attrgetter
+from typing import NamedTuple
 
 import mujoco
 import numpy as np
@@ -37,6 +38,14 @@ PER_BLOCK = 16
 computed; between these rows they are interpolated."""
 
 
+class _Moved(NamedTuple):
+    """Positions, velocities and accelerations (rows, j) at which torques are found."""
+
+    position: FloatArray
+    velocity: FloatArray
+    acceleration: FloatArray
+
+
 class NeededTorques:
     """Computes the torques that the motion in some recordings needs."""
 
@@ -52,10 +61,10 @@ class NeededTorques:
             for trace, step in zip(traces, steps, strict=True)
         ]
         thin = list(zip(motions, rows, strict=True))
-        self._position = _stacked([one.position_rad[own] for one, own in thin])
-        self._velocity = _stacked([one.velocity_rad_s[own] for one, own in thin])
-        self._acceleration = _stacked(
-            [one.acceleration_rad_s2[own] for one, own in thin]
+        self._moved = _Moved(
+            _stacked([one.position_rad[own] for one, own in thin]),
+            _stacked([one.velocity_rad_s[own] for one, own in thin]),
+            _stacked([one.acceleration_rad_s2[own] for one, own in thin]),
         )
         times = [trace.time_s[own] for trace, own in zip(traces, rows, strict=True)]
         self._time_s = np.concatenate(times)
@@ -83,40 +92,52 @@ class NeededTorques:
     def _one(self, variants: Variants, row: int) -> FloatArray:
         """(rows, j) torques for one variant."""
         joints = {name: one[row] for name, one in vars(variants.joints).items()}
-        position = self._position - joints["offset_rad"]
-        torque = self._rigid(variants, row, position)
-        torque = torque + self._passive(variants, row, position)
+        moved = self._timely(joints["late_s"])
+        moved = moved._replace(position=moved.position - joints["offset_rad"])
+        torque = self._rigid(variants, row, moved)
+        torque = torque + self._passive(variants, row, moved)
         torque += self._outside(variants, row)
         for effect, values in variants.torques.items():
             every = np.broadcast_to(values[row], (len(torque), *values[row].shape))
-            time_s = self._time_s[:, None]
-            torque -= effect.torque_nm(every, position, self._velocity, time_s)
-        torque += self._bending(joints)
+            now = moved.position, moved.velocity, self._time_s[:, None]
+            torque -= effect.torque_nm(every, *now)
+        torque += self._bending(joints, moved.position)
         loss = variants.fields.get("dof_frictionloss")
         dry = self._plant.model.dof_frictionloss if loss is None else loss[row]
         dry = dry[self._plant.dofs] + joints["coulomb_nm"]
-        dry = dry + dry_friction_nm(joints, self._velocity, 0.0)
-        torque = _loaded(torque, dry, joints["load_share"], np.sign(self._velocity))
+        dry = dry + dry_friction_nm(joints, moved.velocity, 0.0)
+        torque = _loaded(torque, dry, joints["load_share"], np.sign(moved.velocity))
         return self._late(torque * joints["torque_factor"], variants, row)
 
-    def _rigid(
-        self, variants: Variants, row: int, position_rad: FloatArray
-    ) -> FloatArray:
+    def _timely(self, late_s: FloatArray) -> "_Moved":
+        """The motion as it was at the rows' times, of joints that are read late (j,).
+
+        How late all joints are together is left to `_late`.
+        """
+        moved = self._moved
+        for j in np.flatnonzero(late_s):
+            moved = _Moved(*(one.copy() for one in moved))
+            for rows in self._parts:
+                time_s = self._time_s[rows]
+                later = np.clip(time_s + late_s[j], time_s[0], time_s[-1])
+                for one in moved:
+                    one[rows, j] = CubicSpline(time_s, one[rows, j])(later)
+        return moved
+
+    def _rigid(self, variants: Variants, row: int, moved: "_Moved") -> FloatArray:
         """(rows, j) torques of a variant's bodies, and of all that is nominal."""
         changed = {k: v[row] for k, v in variants.fields.items() if k not in PASSIVE}
-        offset = variants.joints.offset_rad[row]
-        key = (offset.tobytes(), *(v.tobytes() for v in changed.values()))
+        joints = variants.joints
+        own = joints.offset_rad[row].tobytes(), joints.late_s[row].tobytes()
+        key = (*own, *(v.tobytes() for v in changed.values()))
         if key not in self._kept:
             model = model_with(self._plant, changed)
-            motion = position_rad, self._velocity, self._acceleration
-            self._kept[key] = inverse_dynamics(self._plant, model, *motion)
+            self._kept[key] = inverse_dynamics(self._plant, model, *moved)
             if len(self._kept) > MOST_KEPT:
                 self._kept.popitem(last=False)
         return self._kept[key]
 
-    def _passive(
-        self, variants: Variants, row: int, position_rad: FloatArray
-    ) -> FloatArray:
+    def _passive(self, variants: Variants, row: int, moved: "_Moved") -> FloatArray:
         """(rows, j) torques against changed damping, rotor inertias and springs."""
         plant, model = self._plant, self._plant.model
         hinges = [int(model.joint(name).id) for name in plant.joints]
@@ -129,25 +150,27 @@ class NeededTorques:
             else before[name]
             for name in PASSIVE
         }
-        torque = (now["dof_damping"] - before["dof_damping"]) * self._velocity
+        torque = (now["dof_damping"] - before["dof_damping"]) * moved.velocity
         more_kg_m2 = now["dof_armature"] - before["dof_armature"]
-        torque = torque + more_kg_m2 * self._acceleration
+        torque = torque + more_kg_m2 * moved.acceleration
         springs = [
-            one["jnt_stiffness"] * (position_rad - one["qpos_spring"])
+            one["jnt_stiffness"] * (moved.position - one["qpos_spring"])
             for one in (before, now)
         ]
         return np.asarray(torque + springs[1] - springs[0])
 
-    def _bending(self, joints: Mapping[str, FloatArray]) -> FloatArray | float:
+    def _bending(
+        self, joints: Mapping[str, FloatArray], position_rad: FloatArray
+    ) -> FloatArray | float:
         """(rows, j) torques of friction that bends first; 0.0 without any."""
         own = np.flatnonzero(joints["slip_nm"])
         if not own.size:
             return 0.0
-        torque = np.zeros_like(self._position)
+        torque = np.zeros_like(position_rad)
         law = joints["slip_nm"][own], joints["slip_rad"][own]
         for rows, earlier in zip(self._parts, self._earlier, strict=True):
             before = None if earlier is None else earlier[:, own]
-            torque[rows, own] = torque_along(*law, self._position[rows][:, own], before)
+            torque[rows, own] = torque_along(*law, position_rad[rows][:, own], before)
         return torque
 
     def _outside(self, variants: Variants, row: int) -> FloatArray | float:
@@ -160,7 +183,7 @@ class NeededTorques:
             torque = torque - acts[:, None] * (np.array(push.force_n) @ jacobian)
         for body in np.flatnonzero(variants.outside.drag_n_s_m[row]):
             jacobian = self._jacobian(int(body))
-            speed = np.einsum("rxj,rj->rx", jacobian, self._velocity)
+            speed = np.einsum("rxj,rj->rx", jacobian, self._moved.velocity)
             drag_n = variants.outside.drag_n_s_m[row, body] * speed
             torque = torque + np.einsum("rxj,rx->rj", jacobian, drag_n)
         return torque
@@ -170,8 +193,8 @@ class NeededTorques:
         if body not in self._jacobians:
             plant, model = self._plant, self._plant.model
             data, whole = mujoco.MjData(model), np.zeros((3, model.nv))
-            found = np.empty((len(self._position), 3, len(plant.joints)))
-            for row, position in enumerate(self._position):
+            found = np.empty((len(self._moved.position), 3, len(plant.joints)))
+            for row, position in enumerate(self._moved.position):
                 data.qpos[plant.qpos] = position
                 mujoco.mj_kinematics(model, data)
                 mujoco.mj_comPos(model, data)

@@ -11,7 +11,7 @@ from diagnosis.plant.servo import Servo
 from diagnosis.replay.conforming_ground import conform
 from diagnosis.replay.drive import Drive
 from diagnosis.replay.laws import BatchLaws
-from diagnosis.replay.servos import columns
+from diagnosis.replay.servos import Columns, columns
 from diagnosis.traces.trace import Trace
 from diagnosis.traces.windows import Run
 from groundwalk.arrays import FloatArray, IntArray
@@ -120,7 +120,7 @@ class ReplayBatch:
         measured = np.tile([run.position_rad for run in runs], (n, 1))
         velocity = np.tile([run.velocity_rad_s for run in runs], (n, 1))
         # late sensors show where the joints were; by now they have moved on
-        late_s = np.repeat(variants.signals.sensor_delay_s, self.count)[:, None]
+        late_s = np.repeat(variants.late_s, self.count, axis=0)
         start = measured + late_s * velocity - self.laws.joints["offset_rad"]
         self.qpos[:, plant.qpos], self.qvel[:, plant.dofs] = start, velocity
         bases = [run.base for run in runs if run.base is not None]
@@ -175,8 +175,7 @@ class Tape:
         rows = np.arange(variants.n) * self._batch.count + k
         since_s = run.trace.time_s - run.trace.time_s[0]
         now_s = np.tile(since_s, (variants.n, 1))
-        late_s = now_s - variants.signals.sensor_delay_s[:, None]
-        position, velocity = self._joints_at(rows, late_s)
+        position, velocity = self._seen_at(rows, now_s, variants)
         position = position + variants.joints.offset_rad[:, None]
         bias = variants.signals.gyro_bias_rad_s[:, None]
         gyroscope, base = np.repeat(bias, run.trace.ticks, axis=1), None
@@ -203,20 +202,31 @@ class Tape:
         lasted_s = np.where(lasted_s > 0, lasted_s, np.inf)  # a run of one row
         return np.asarray(((at[after] - at[before]) / lasted_s).transpose(1, 0, 2))
 
-    def _joints_at(
-        self, rows: IntArray, time_s: FloatArray
+    def _seen_at(
+        self, rows: IntArray, time_s: FloatArray, variants: Variants
     ) -> tuple[FloatArray, FloatArray]:
-        """Joint positions and velocities (n, T, j) of simulations `rows` at some times.
+        """Positions and velocities (n, T, j) that are read at (n, T) times."""
+        late_s = variants.late_s
+        position, velocity = self._joints_at(rows, time_s - late_s[:, :1])
+        for j in np.flatnonzero((late_s != late_s[:, :1]).any(axis=0)).tolist():
+            own = self._joints_at(rows, time_s - late_s[:, j : j + 1], [j])
+            position[..., [j]], velocity[..., [j]] = own
+        return position, velocity
+
+    def _joints_at(
+        self, rows: IntArray, time_s: FloatArray, joints: Columns = slice(None)
+    ) -> tuple[FloatArray, FloatArray]:
+        """Positions and velocities (n, T, j) of joints in simulations at (n, T) times.
 
         Before the start, joints are assumed to have moved at their first velocities.
         """
         low, t = self._between(time_s)
         row = rows[:, None]
-        before = self._position[low, row], self._velocity[low, row]
-        after = self._position[low + 1, row], self._velocity[low + 1, row]
+        both = self._position[..., joints], self._velocity[..., joints]
+        before, after = ([one[at, row] for one in both] for at in (low, low + 1))
         position, velocity = hermite(before, after, self._batch.step_s, t)
         before_s = np.minimum(time_s, 0.0)[..., None]
-        return position + before_s * self._velocity[0, row], velocity
+        return position + before_s * both[1][0, row], velocity
 
     def _between(self, time_s: FloatArray) -> tuple[IntArray, FloatArray]:
         """Index of the physics step before each time, and the share of a step since."""
@@ -227,8 +237,8 @@ class Tape:
 
 
 def hermite(
-    before: tuple[FloatArray, FloatArray],
-    after: tuple[FloatArray, FloatArray],
+    before: Sequence[FloatArray],
+    after: Sequence[FloatArray],
     step_s: float,
     share: FloatArray | float,
 ) -> tuple[FloatArray, FloatArray]:

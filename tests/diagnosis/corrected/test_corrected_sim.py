@@ -66,6 +66,8 @@ IN_THE_AIR = [
     [("backlash", "LKneePitch", 0.05), ("servo_fade", "RShoulderPitch", 0.05)],
     [("encoder_offset", "LKneePitch", 0.1), ("sensor_delay", "encoders", 0.0133)],
     [("command_latency", "commands", 0.0133)],
+    [("late_reading", "LKneePitch", 0.0133), ("sensor_delay", "encoders", 0.005)],
+    [("presliding", "LElbowRoll", 0.2, 0.03), ("presliding", "LKneePitch", 0.5, 0.01)],
     [("stribeck_friction", "LElbowRoll", 0.1, 0.2, 0.1)],
     [("load_friction", "LShoulderPitch", 0.4), ("coulomb_friction", "RHipPitch", 0.5)],
     [("joint_elasticity", "LKneePitch", 40.0, 0.1), ("armature", "LKneePitch", 0.02)],

@@ -26,6 +26,7 @@ PARAMETERS = {
     "joint_elasticity": "stiffness damping",
     "command_latency": "delay",
     "sensor_delay": "delay",
+    "late_reading": "delay",
     "encoder_offset": "offset",
     "gyro_bias": "x y z",
     "torque_limit": "torque",

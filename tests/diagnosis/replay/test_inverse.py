@@ -176,3 +176,56 @@ def test_no_friction_is_stated_at_rest(share):
     trace = moving(plant, zero, zero, zero)
     rubs = (("coulomb_friction", "hinge", 0.5), ("load_friction", "hinge", share))
     assert not needed(plant, trace, *rubs).any()
+
+
+@pytest.mark.parametrize("rows", [1, 40])
+def test_friction_that_bends_needs_torque_after_each_turn(rows):
+    """Masing's rule on a swing: F = F_turn - 2 virgin(way / 2), of 8 springs."""
+    torque, reach = 0.3, 0.5
+    plant = plant_of(WHEEL)
+    trace, q, *_ = swinging(plant, rows)
+    effect = ("presliding", "hinge", torque, reach)
+    found = (needed(plant, trace, effect) - needed(plant, trace))[:, 0]
+    most = reach * np.arange(1, 9) / 8
+
+    def virgin(x):
+        return torque / most.sum() * np.minimum(x[:, None], most).sum(axis=1)
+
+    top, bottom = np.argmax(q), np.argmin(q)
+    falls = virgin(q[[top]]) - 2 * virgin((q[top] - q[top:bottom]) / 2)
+    limit = 1e-12 if rows == 1 else 0.03 * torque
+    np.testing.assert_allclose(found[:top], virgin(q[:top]), atol=limit)
+    np.testing.assert_allclose(found[top:bottom], falls, atol=limit)
+
+
+def test_a_later_part_knows_how_friction_was_bent():
+    plant = plant_of(WHEEL)
+    trace, *_ = swinging(plant)
+    effect = ("presliding", "hinge", 0.3, 0.5)
+    whole = needed(plant, trace, effect)
+    part = trace.part(50, 101)
+    np.testing.assert_allclose(needed(plant, part, effect), whole[50:], atol=1e-9)
+
+
+def test_a_joint_that_is_read_late_moved_before():
+    """Torques are those of the motion itself, which the reading shows later."""
+    plant, late_s = plant_of(ARM), 0.013
+    time_s = ticks(1.0)
+
+    def motion(t):
+        q = np.stack([0.4 * np.sin(5 * t), 0.3 * np.sin(4 * t + 1)], 1)
+        v = np.stack([2.0 * np.cos(5 * t), 1.2 * np.cos(4 * t + 1)], 1)
+        return q, v, -np.array([25.0, 16.0]) * q
+
+    true, late = motion(time_s), motion(time_s - late_s)
+    mixed = [
+        np.stack([one[:, 0], other[:, 1]], 1)
+        for one, other in zip(true, late, strict=True)
+    ]
+    effect = ("late_reading", "elbow", late_s)
+    right = needed(plant, moving(plant, *true))
+    found = needed(plant, moving(plant, *mixed), effect)
+    wrong = needed(plant, moving(plant, *mixed))
+    inside = slice(5, -5)
+    np.testing.assert_allclose(found[inside], right[inside], atol=1e-3)
+    assert np.abs(wrong - right)[inside].max() > 0.005
