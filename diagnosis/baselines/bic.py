@@ -9,12 +9,12 @@ from diagnosis.baselines.found import NORMAL_80, found_effect, verdict_of
 from diagnosis.baselines.replays import exact_replays
 from diagnosis.plant.plant import Plant
 from diagnosis.residuals.predictor import Model, Predictor
+from diagnosis.residuals.ripples import usage_of
 from diagnosis.residuals.signatures import signatures
 from diagnosis.search.fitting import FittedModel, fit_all
 from diagnosis.search.screening import Screen
 from diagnosis.traces.reference import Reference
 from diagnosis.traces.trace import Trace
-from diagnosis.traces.usage import Usage
 from diagnosis.verdict import Verdict
 from groundwalk.arrays import FloatArray
 
@@ -67,7 +67,7 @@ def explained(predictor: Predictor) -> Model:
 def singles(predictor: Predictor) -> tuple[list[FittedModel], FloatArray]:
     """Fits of the most promising effects, and BIC of no effect and of each of them."""
     residual = predictor.residuals([()])[0]
-    found = signatures(predictor, (), Usage.of(predictor.plant, predictor.traces))
+    found = signatures(predictor, (), usage_of(predictor))
     guesses = Screen(predictor, found).singles(residual)[:CANDIDATES]
     fits = fit_all(predictor, [guess.model for guess in guesses], followed=True)
     samples = int(predictor.scored.sum())

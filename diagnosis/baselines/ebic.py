@@ -14,12 +14,12 @@ from diagnosis.effects.library import all_effects
 from diagnosis.effects.parts import PlacedEffect
 from diagnosis.plant.plant import Plant
 from diagnosis.residuals.predictor import Model, Predictor
+from diagnosis.residuals.ripples import usage_of
 from diagnosis.residuals.signatures import signatures
 from diagnosis.search.fitting import FittedModel, fit_all
 from diagnosis.search.screening import Screen
 from diagnosis.traces.reference import Reference
 from diagnosis.traces.trace import Trace
-from diagnosis.traces.usage import Usage
 from diagnosis.verdict import Verdict
 from groundwalk.arrays import FloatArray
 
@@ -88,7 +88,7 @@ def explained(predictor: Predictor) -> Model:
 
 def stepwise(predictor: Predictor) -> list[Step]:
     """The steps by which the extended BIC falls; `predictor` must be calibrated."""
-    found = signatures(predictor, (), Usage.of(predictor.plant, predictor.traces))
+    found = signatures(predictor, (), usage_of(predictor))
     if not found:
         return []
     screen = Screen(predictor, found)

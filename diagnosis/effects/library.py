@@ -12,6 +12,7 @@ from diagnosis.effects import (
     ground,
     joints,
     presliding,
+    ripple,
     sensors,
     servos,
 )
@@ -45,6 +46,7 @@ BUILT_IN: Mapping[str, Effect] = MappingProxyType(
             bodies.ComOffset(),
             joints.JointSpring(),
             joints.TorqueOffset(),
+            ripple.Cogging(),
             joints.EndStop(),
             servos.ServoFade(),
             servos.ServoOff(),

@@ -132,6 +132,7 @@ def _trials(
                 model = tuple(
                     PlacedEffect(name, place, values[level])
                     for place, values in options.items()
+                    if level < len(values)
                 )
                 trials.append((model, True))
         else:

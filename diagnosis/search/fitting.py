@@ -179,7 +179,7 @@ def _fit(course: _Course, steps: int, jacobian: FloatArray | None) -> FittedMode
 ON_BOUND = 1e-3
 """Distance from a bound, in scaled coordinates, within which a value is on it."""
 
-SECONDARY = ("start", "duration", "side", "rest")
+SECONDARY = ("start", "duration", "side", "rest", "phase")
 """Names of parameters that do not say how large an effect is."""
 
 

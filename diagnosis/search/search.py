@@ -13,12 +13,12 @@ from diagnosis.effects.library import all_effects, effect
 from diagnosis.residuals.bursts import push_intervals
 from diagnosis.residuals.channels import MORE_THAN_NOISE
 from diagnosis.residuals.predictor import Model, Predictor
+from diagnosis.residuals.ripples import usage_of
 from diagnosis.residuals.signatures import Signature, signatures
 from diagnosis.search.candidates import Candidates, grown, moved
 from diagnosis.search.judging import Judge, distinct, gain_of_noise
 from diagnosis.search.result import MOST_LEFT, Judged, SearchResult, keys_of
 from diagnosis.search.spread import is_widespread
-from diagnosis.traces.usage import Usage
 
 ONE_MORE = 0.5
 """Share of the energy above the noise beside a single effect that one more must promise
@@ -41,7 +41,7 @@ class Search:
         self.signatures: list[Signature] = []
         self.widespread = False
         self._rules, self._fit = judge.rules, judge.fit
-        self._usage = Usage.of(judge.fit.plant, judge.fit.traces)
+        self._usage = usage_of(judge.fit)
 
     def run(self, anyway: bool = False) -> SearchResult:
         """Add effects to models until another one does not improve them enough.

@@ -1,7 +1,7 @@
 """Measures the range, speed and torque that each joint used in some recordings."""
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -21,6 +21,10 @@ _LASTS_S = 0.02
 are noise."""
 
 
+Ripple = tuple[float, float, float]
+"""Size [N m], waves per turn and phase [rad] of a torque that repeats with an angle."""
+
+
 @dataclass(frozen=True, eq=False)
 class Usage:
     """The range, speed and torque that each of j joints used, arrays (j,).
@@ -30,12 +34,15 @@ class Usage:
       high_rad: largest position.
       top_speed_rad_s: highest speed of the joint itself, on average over 20 ms.
       torque_nm: 99 % of the nominal servos' torques are below it.
+      ripples: for joints by name the ripples that their torques show most, the first
+        most; empty if nobody looked for any.
     """
 
     low_rad: FloatArray
     high_rad: FloatArray
     top_speed_rad_s: FloatArray
     torque_nm: FloatArray
+    ripples: Mapping[str, tuple[Ripple, ...]] = field(default_factory=dict)
 
     @classmethod
     def of(cls, plant: Plant, traces: Sequence[Trace]) -> "Usage":

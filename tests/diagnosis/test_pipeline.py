@@ -21,8 +21,8 @@ def viscous(t, q, v):
     return np.array([0.0, -0.6]) * v
 
 
-def cogging(t, q, v):
-    return np.array([0.0, 0.6]) * np.sin(25 * q)
+def humming(t, q, v):
+    return np.array([0.0, 0.6]) * np.sin(31 * t)
 
 
 @cache
@@ -133,7 +133,7 @@ def test_what_fails_the_guards_is_not_named(monkeypatch):
 
 @pytest.mark.slow
 def test_what_the_library_lacks_is_not_named_with_confidence():
-    verdict = verdict_of(more_nm=cogging)
+    verdict = verdict_of(more_nm=humming)
     check(verdict)
     assert verdict.kind == "unknown"
     assert verdict.unexplained.channel == "position.elbow"

@@ -6,12 +6,12 @@ import numpy as np
 
 from diagnosis.residuals.coordinates import Coordinates
 from diagnosis.residuals.predictor import Model
+from diagnosis.residuals.ripples import usage_of
 from diagnosis.residuals.trust import trust_of
 from diagnosis.search.fitting import FittedModel, fit_all
 from diagnosis.search.judging import Judge
 from diagnosis.search.many.ebic import Ebic
 from diagnosis.search.result import Judged
-from diagnosis.traces.usage import Usage
 from groundwalk.arrays import FloatArray
 
 MOST_ROUNDS = 12
@@ -48,7 +48,7 @@ class Fits:
         if weighs:
             self._weigh(())
         self.judge = Judge(*parts, judge.rules, judge.healthy, judge.hooks)
-        self.usage = Usage.of(self.fit.plant, self.fit.traces)
+        self.usage = usage_of(self.fit)
 
     def allowed(self, names: Iterable[str]) -> tuple[str, ...]:
         """Those of some names of effects that are tried."""

@@ -38,6 +38,7 @@ PARAMETERS = {
     "com_offset": "x y z",
     "joint_spring": "stiffness rest",
     "torque_offset": "torque",
+    "cogging": "torque per_turn phase",
     "end_stop": "angle side",
     "servo_fade": "rate",
     "servo_off": "share start duration",

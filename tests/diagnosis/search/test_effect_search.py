@@ -194,12 +194,12 @@ def test_a_user_can_ask_for_a_share_of_the_error():
 
 @pytest.mark.slow
 def test_what_no_effect_makes_is_not_explained():
-    """Cogging: a torque by position, in waves of a quarter of a radian."""
+    """A torque that hums with time, five times a second."""
 
-    def cogging(t, q, v):
-        return np.array([0, 0.6]) * np.sin(25 * q)
+    def humming(t, q, v):
+        return np.array([0, 0.6]) * np.sin(31 * t)
 
-    traces = [measured(seed, cogging) for seed in range(2)]
+    traces = [measured(seed, humming) for seed in range(2)]
     found = search_of(*traces).run()
     assert found.nothing > 20 * found.floor
     best = found.winner.selected if found.winner else found.nothing

@@ -1,4 +1,4 @@
-"""Effects that the diagnosis does not know, each against a closed form."""
+"""Effects outside the first sets' library, each against a closed form."""
 
 import math
 

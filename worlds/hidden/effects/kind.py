@@ -143,7 +143,8 @@ class HiddenKind:
         fixed: a change, and a new kind, would draw other cases from the same seed.
       place: "joint", "body", or the one word that is this kind's only place.
       quantities: its parameters.
-      outside: whether the diagnosis has no effect of this name.
+      outside: whether the diagnosis had no effect of this name when sets 1 to 4 of
+        concealed cases were drawn; their truth stays, though it may have one by now.
       engines: names of the physics engines that can simulate it.
       needs_motion: whether it shows only at joints that move.
       since: the first set of concealed cases that may have it.
