@@ -31,7 +31,7 @@ class Presliding(JointEffect):
     native = False
     main_parameters = ("torque",)
     words = EffectWords(
-        "friction that bends before it slides (presliding)",
+        "friction that bends first (presliding)",
         "{joint} has dry friction of {torque} that bends for {reach} before it slides, "
         "{lacking}",
         "Teeth, seals and grease give way like springs after each reversal before they "
