@@ -30,12 +30,15 @@ class Presliding(JointEffect):
     name = "presliding"
     native = False
     main_parameters = ("torque",)
+    shown_by = "reversals"
     words = EffectWords(
         "friction that bends first (presliding)",
         "{joint} has dry friction of {torque} that bends for {reach} before it slides, "
         "{lacking}",
         "Teeth, seals and grease give way like springs after each reversal before they "
         "slide, so that small motions meet a spring and large ones dry friction.",
+        "Gears of cheap servos do this; a stiffer gear or fresh grease shortens the "
+        "way.",
     )
 
     def parameters(self, plant: Plant, place: str) -> tuple[Parameter, ...]:

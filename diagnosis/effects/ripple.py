@@ -32,6 +32,7 @@ class Cogging(TorqueEffect):
 
     name = "cogging"
     of_motor = False
+    shown_by = "poses"
     main_parameters = ("torque",)
     rarity_nats = 5.0
     """Some 150 ripples can be told apart in 5 rad, and the one that fits noise best
@@ -42,6 +43,8 @@ class Cogging(TorqueEffect):
         "{phase}), {lacking}",
         "Magnets of a motor, teeth of a gear or an eccentric wheel help and hinder the "
         "motion in turn, always at the same angles.",
+        "Count the ripples in a turn of motor or gear: as many teeth or magnets are to "
+        "blame; one or two mean a wheel that runs out of true.",
     )
 
     def places(self, plant: Plant, traces: Sequence[Trace]) -> tuple[str, ...]:

@@ -102,6 +102,7 @@ class LateReading(NumberEffect, JointEffect):
 
     name = "late_reading"
     native = False
+    shown_by = "accelerations"
     of_motor = False
     rarity_nats = 1.0
     quantity = "late_s"
@@ -111,6 +112,7 @@ class LateReading(NumberEffect, JointEffect):
         "the position of {joint} is read {delay} later than its time stamp says",
         "Servos on one bus are asked one after the other, and a row of the recording "
         "has one time for all of them.",
+        "Read all servos at once (sync read), or stamp each value with its own time.",
     )
 
     def places(self, plant: Plant, traces: Sequence[Trace]) -> tuple[str, ...]:
