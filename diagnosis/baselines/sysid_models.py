@@ -47,7 +47,8 @@ def free_parameters(plant: Plant, traces: Sequence[Trace]) -> list[FreeParameter
     """All parameters to be fitted: those that users of mujoco.sysid usually fit.
 
     They belong to effects that MuJoCo can simulate, with one parameter of a joint or
-    body, and without threshold: inertia, friction, stiffness, damping and mass.
+    body, and without threshold: inertia, friction, stiffness, damping and mass. What
+    differs from joint to joint, such as an encoder's zero, is not among them.
     Typical sizes are those for the servos of the first recording.
     """
     plant = replace(plant, servo=traces[0].servo)
@@ -55,6 +56,8 @@ def free_parameters(plant: Plant, traces: Sequence[Trace]) -> list[FreeParameter
     for name, kind in all_effects().items():
         is_fixed_part = kind.place_kind in ("joint", "body")
         if not kind.native or kind.threshold or not is_fixed_part:
+            continue
+        if not kind.of_motor:
             continue
         for place in kind.places(plant, traces):
             parameter, *others = kind.parameters(plant, place)

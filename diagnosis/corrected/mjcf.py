@@ -1,7 +1,7 @@
 """Writes `corrected.xml`: a robot's MJCF with the effects that MuJoCo can simulate."""
 
 import ctypes
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from types import SimpleNamespace
@@ -17,10 +17,13 @@ from diagnosis.replay.replay import STEP_S
 from diagnosis.replay.servos import BatchFriction, BatchServos
 from diagnosis.residuals.predictor import Model
 from diagnosis.residuals.replays import variants_of
+from groundwalk.arrays import BoolArray, FloatArray
 
 CORRECTED_XML = "corrected.xml"
-_LINEAR = 1
-"""MuJoCo's code for linear interpolation between two delayed controls."""
+_LINEAR, _CUBIC = 1, 2
+"""MuJoCo's codes for interpolation between delayed controls, and between readings."""
+_AROUND = 3
+"""Samples beyond the delay that cubic interpolation needs: a spline has four."""
 
 _CONTACTS = " and all contacts switched off"
 _DIGITS = 17
@@ -35,26 +38,34 @@ def corrected_mjcf(
     Time step, integrator, contact flags and solver parameters are those of the model's
     own file, except at joints with new friction. An XML comment lists the differences.
     Controls are position targets of the joints. Late commands become the actuators'
-    `delay`; until the first command is due the target is 0.
+    `delay`; until the first command is due the target is 0. An encoder's offset is the
+    joint's `ref`, so that `qpos` is the measured angle. Late encoders are sensors
+    `position.<joint>` and `velocity.<joint>` with a `delay`. A constant torque is part
+    of the actuator's force, beside its torque limit.
 
-    Effects of the `model` that MuJoCo cannot simulate are left out. `servo` are the
-    gains of the recordings if not the plant's own; the time step is the model file's
-    own, or 2 ms if it has none.
+    Effects of the `model` that MuJoCo cannot simulate are left out, see
+    `laws_file.laws_text`. `servo` are the gains of the recordings if not the plant's
+    own; the time step is `own_step_s` by default.
     """
-    native = tuple(placed for placed in model if effect(placed.name).native)
+    native = native_parts(model)
     variants = variants_of(plant, [native])
     spec = plant.spec.copy()
     options = plant.options
     if options is not None:
         spec.option.integrator = options.integrator
         spec.option.disableflags = options.disableflags
-    spec.option.timestep = step_s = step_s or (
-        options.timestep_s if options else STEP_S
-    )
+    spec.option.timestep = step_s = step_s or own_step_s(plant)
     compiled = spec.compile()
+    own = compiled.dof_solimp.copy(), compiled.dof_solref.copy()
     _write_fields(compiled, variants, servo or plant.servo, step_s)
+    rubs = _rubs(variants_of(plant, [model]))
+    same = np.ones(compiled.nv, bool)
+    same[np.array(plant.dofs)[rubs]] = False
+    compiled.dof_solimp[same], compiled.dof_solref[same] = own[0][same], own[1][same]
     spec.copy_back(compiled)
-    _delay_commands(spec, float(variants.signals.command_delay_s[0]), step_s)
+    signals = variants.signals
+    _delay_commands(spec, float(signals.command_delay_s[0]), step_s)
+    _delay_readings(spec, plant.joints, float(signals.sensor_delay_s[0]), step_s)
     folder = Path(spec.modelfiledir or ".").resolve()
     spec.meshdir = str(folder / spec.meshdir) if spec.meshes else spec.meshdir
     with _all_digits():
@@ -62,15 +73,57 @@ def corrected_mjcf(
     return f"{head}{line}{_comment(variants, native, model)}{rest}"
 
 
+def own_step_s(plant: Plant) -> float:
+    """Time step [s] of the model's own file; 2 ms if it has none."""
+    return plant.options.timestep_s if plant.options else STEP_S
+
+
+def native_parts(model: Model) -> Model:
+    """What MuJoCo can simulate of the effects of a model: all, a part, or nothing."""
+    parts = (effect(placed.name).native_part(placed) for placed in model)
+    return tuple(part for part in parts if part is not None)
+
+
+def friction_solver(
+    plant: Plant, model: Model, servo: Servo, step_s: float
+) -> tuple[FloatArray, FloatArray]:
+    """MuJoCo's `dof_solref` (nv, 2) and `dof_solimp` (nv, 5) in the diagnosis' replays.
+
+    They make friction stop a joint within a step at all joints, also those whose own
+    softer parameters `corrected_mjcf` leaves as they are.
+    """
+    compiled = plant.spec.compile()
+    _write_fields(compiled, variants_of(plant, [native_parts(model)]), servo, step_s)
+    return compiled.dof_solref.copy(), compiled.dof_solimp.copy()
+
+
+def _rubs(variants: Variants) -> BoolArray:
+    """(j,) whether a joint has any dry friction that effects of a variant add."""
+    joints = variants.joints
+    return np.asarray(
+        (joints.coulomb_nm[0] + joints.stribeck_nm[0] + joints.load_share[0]) != 0
+    )
+
+
 def _comment(variants: Variants, native: Model, model: Model) -> str:
     """XML comment on how the corrected MJCF differs from the nominal robot model."""
     plant = variants.plant
     others = [placed.key for placed in model if placed not in native]
-    rub = [plant.joints[i] for i in np.flatnonzero(variants.joints.coulomb_nm[0])]
+    late = variants.signals.sensor_delay_s[0] > 0
+    rub = [plant.joints[i] for i in np.flatnonzero(_rubs(variants_of(plant, [model])))]
     lines = [
         f"{plant.name} with the effects that groundwalk diagnose found.",
         f"In this file: {', '.join(placed.key for placed in native) or 'none'}.",
-        f"Not in this file, MuJoCo lacks them: {', '.join(others)}." if others else "",
+        f"Not in this file, MuJoCo lacks them: {', '.join(others)}. What a step needs "
+        "of them is in corrected_laws.py beside this file."
+        if others
+        else "",
+        "Angles (qpos) are those that encoders show, offsets included."
+        if variants.joints.offset_rad.any()
+        else "",
+        "The sensors position.<joint> and velocity.<joint> are as late as the encoders."
+        if late
+        else "",
         f"Friction solver parameters (solreffriction, solimpfriction) are stiff at "
         f"{', '.join(rub)}: with softer ones the friction found creeps."
         if rub and not plant.creeps
@@ -97,6 +150,7 @@ def _write_fields(
             value[...] = values[0]
         else:
             setattr(target, last, type(value)(values[0]))
+    _shift_zeros(compiled, variants)
     data = mujoco.MjData(compiled)
     mujoco.mj_setConst(compiled, data)
     # code for a batch writes to the fields of one model, as views (1, ...)
@@ -109,11 +163,26 @@ def _write_fields(
     damping = servos.damping_nm_s_rad
     rows, limits = variants.plant.actuators, servos.law["limit"][0]
     compiled.actuator_forcelimited[rows] = np.isfinite(limits)
-    own = compiled.dof_solimp.copy(), compiled.dof_solref.copy()
+    _add_constant_torques(compiled, variants)
     BatchFriction(one, variants.plant, joints, damping, step_s)
-    same = np.ones(compiled.nv, bool)
-    same[np.array(variants.plant.dofs)[variants.joints.coulomb_nm[0] != 0]] = False
-    compiled.dof_solimp[same], compiled.dof_solref[same] = own[0][same], own[1][same]
+
+
+def _shift_zeros(compiled: mujoco.MjModel, variants: Variants) -> None:
+    """Make joint angles those that encoders show; the robot stays where it is."""
+    plant, offset = variants.plant, variants.joints.offset_rad[0]
+    for name, qpos, shift in zip(plant.joints, plant.qpos, offset, strict=True):
+        compiled.qpos0[qpos] += shift
+        compiled.qpos_spring[qpos] += shift
+        compiled.jnt_range[compiled.joint(name).id] += shift
+
+
+def _add_constant_torques(compiled: mujoco.MjModel, variants: Variants) -> None:
+    """Add torques that never change to the actuators' forces, beside their limits."""
+    rows, none = variants.plant.actuators, np.zeros((1, len(variants.plant.joints)))
+    for kind, values in variants.torques.items():
+        torque_nm = kind.torque_nm(values, none, none, none[:, :1])[0]
+        compiled.actuator_biasprm[rows, 0] += torque_nm
+        compiled.actuator_forcerange[rows] += torque_nm[:, None]
 
 
 def _delay_commands(spec: mujoco.MjSpec, delay_s: float, step_s: float) -> None:
@@ -128,6 +197,27 @@ def _delay_commands(spec: mujoco.MjSpec, delay_s: float, step_s: float) -> None:
         actuator.delay = delay_s
         actuator.nsample = int(np.ceil(delay_s / step_s)) + 1
         actuator.interp = _LINEAR
+
+
+def _delay_readings(
+    spec: mujoco.MjSpec, joints: Sequence[str], delay_s: float, step_s: float
+) -> None:
+    """Add sensors of joints' positions and velocities that are late, as encoders are.
+
+    As of commands, a delay of less than half a step is left out.
+    """
+    if delay_s < step_s / 2:
+        return
+    kinds = mujoco.mjtSensor
+    for name in joints:
+        for quantity, kind, interpolation in (
+            ("position", kinds.mjSENS_JOINTPOS, _CUBIC),
+            ("velocity", kinds.mjSENS_JOINTVEL, _LINEAR),
+        ):
+            sensor = spec.add_sensor(name=f"{quantity}.{name}", type=kind)
+            sensor.objtype, sensor.objname = mujoco.mjtObj.mjOBJ_JOINT, name
+            sensor.delay, sensor.interp = delay_s, interpolation
+            sensor.nsample = int(np.ceil(delay_s / step_s)) + _AROUND
 
 
 @contextmanager

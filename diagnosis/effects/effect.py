@@ -63,7 +63,12 @@ class Effect(ABC):
     """Whether replays show the effect; False if only compared torques do."""
 
     native: ClassVar[bool]
-    """Whether MuJoCo can simulate the effect, so that an MJCF file can contain it."""
+    """Whether MuJoCo can simulate the effect, so that an MJCF file can contain it; of
+    torques (`TorqueEffect`) those that never change."""
+
+    no_law: ClassVar[str] = ""
+    """Why no law for single steps adds the effect to a model that lacks it; "" if one
+    does, or if MuJoCo can simulate the effect."""
 
     words: ClassVar[EffectWords]
     """Words for reports; made from the effect's name and class docstring by default."""
@@ -235,6 +240,10 @@ class Effect(ABC):
         """The simpler effect that `placed` contains, or else `placed` itself."""
         return placed
 
+    def native_part(self, placed: PlacedEffect) -> PlacedEffect | None:
+        """What MuJoCo can simulate of the effect, as an effect; None for nothing."""
+        return placed if self.native else None
+
     def softer(self, plant: Plant, placed: PlacedEffect) -> PlacedEffect:
         """The effect where parts that it takes as rigid yield, as far as they may.
 
@@ -336,6 +345,7 @@ class TorqueEffect(JointEffect):
     """
 
     native: ClassVar[bool] = False
+    no_law: ClassVar[str] = "its law is code of your own"
 
     def apply(self, copies: Variants, row: int, place: str, values: FloatArray) -> None:
         """Store the values (p,) for one variant; those of several effects are added.

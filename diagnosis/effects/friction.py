@@ -176,6 +176,10 @@ class StribeckFriction(JointEffect):
         mean_nm = coulomb_nm + extra_nm / 2
         return PlacedEffect("coulomb_friction", placed.place, (mean_nm,))
 
+    def native_part(self, placed: PlacedEffect) -> PlacedEffect | None:
+        """Dry friction that is the same at all speeds; the peak is left out."""
+        return PlacedEffect("coulomb_friction", placed.place, placed.values[:1])
+
     def torque_column(self, motion: JointMotion) -> FloatArray:
         """(rows,) friction near standstill for tau_s = 1 N m, along the velocity."""
         slow = np.exp(-((motion.velocity_rad_s / COLUMN_SPEED_RAD_S) ** 2))

@@ -149,6 +149,7 @@ class UnevenGround(NumberEffect):
     name = "uneven_ground"
     place_kind = "world"
     native = False
+    no_law = "it says how high bumps are, not where"
     rarity_nats = 10.0  # fits every stand of a sole, like a parameter for each
     quantity = "bump_height_m"
     usual = (Parameter("height", "m", 0.0, 0.03, 0.0, 0.001),)

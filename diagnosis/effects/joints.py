@@ -62,12 +62,13 @@ class EncoderOffset(NumberEffect, JointEffect):
     """An encoder with a wrong zero: the servo acts on measured = true + offset.
 
     Source: joint offset of kinematic calibration, Hollerbach, Khalil and Gautier
-    2016, "Model identification", Springer Handbook of Robotics.
+    2016, "Model identification", Springer Handbook of Robotics. In MuJoCo the joint's
+    `ref`: then `qpos` is the measured angle.
     """
 
     name = "encoder_offset"
     shown_by = "poses"
-    native = False
+    native = True
     joint_by_joint = False
     of_motor = False
     by_inverse_dynamics = True
@@ -147,11 +148,13 @@ class TorqueOffset(TorqueEffect):
     """Constant torque at a joint, in the direction of growing angles if positive.
 
     Source: the offset in the friction of EMPS, Janot, Gautier and Brunot 2019, "Data
-    set and reference models of EMPS".
+    set and reference models of EMPS". In MuJoCo `actuator_biasprm` of the joint's
+    actuator, whose `forcerange` is shifted by as much.
     """
 
     name = "torque_offset"
     shown_by = "poses"
+    native = True
     of_motor = False
     words = EffectWords(
         "constant torque",

@@ -22,6 +22,7 @@ class TorqueScale(NumberEffect, JointEffect):
 
     name = "torque_scale"
     native = False
+    no_law = "it is in what a recording says of torques, not in how the robot moves"
     replayed = False
     on_every_servo = False
     rarity_nats = 1.0
@@ -56,13 +57,13 @@ class SensorDelay(NumberEffect):
     The delay is usually 2 to 40 ms.
 
     Source: transfer function exp(-s delay), Astrom and Murray 2008, "Feedback
-    systems", section 8.2.
+    systems", section 8.2. In MuJoCo a sensor's `delay`.
     """
 
     name = "sensor_delay"
     shown_by = "accelerations"
     place_kind = "encoders"
-    native = False
+    native = True
     rarity_nats = 1.0
     quantity = "sensor_delay_s"
     usual = (Parameter("delay", "s", 0.0, 0.2, 0.0, 0.01),)

@@ -33,6 +33,8 @@ def everywhere(plant, joint, body):
         ("joint_spring", joint, 0.3, 0.1),
         ("end_stop", joint, 0.3, 1.0),
         ("ground_slope", "world", 0.1, 0.05),
+        ("encoder_offset", joint, 0.07),
+        ("torque_offset", joint, -0.2),
     ]
     if plant.base == "floating":
         effects += [
@@ -60,6 +62,7 @@ def simulated(text, plant, run):
     if run.base is not None:
         data.qpos[:7] = run.base[:7]
     columns = [model.joint(name).qposadr[0] for name in plant.joints]
+    data.qpos[columns] = run.position_rad
     actuators = [model.actuator(name).id for name in plant.joints]
     positions = [data.qpos[columns].copy()]
     for command in run.trace.command_rad[:-1]:
@@ -100,6 +103,70 @@ def test_late_commands(delay_s):
     check_same(plant, [("command_latency", "commands", delay_s)])
 
 
+@pytest.mark.parametrize("joint", ["LKneePitch", "RShoulderRoll"])
+def test_an_encoders_zero_alone(joint):
+    """The robot stands where it stood; its angles are called otherwise."""
+    plant = load_plant("nao", "fixed")
+    check_same(plant, [("encoder_offset", joint, 0.1)])
+    text = corrected_mjcf(plant, (PlacedEffect("encoder_offset", joint, (0.1,)),))
+    model = mujoco.MjModel.from_xml_string(text)
+    low, high = model.joint(joint).range - plant.model.joint(joint).range
+    assert (low, high) == pytest.approx((0.1, 0.1))
+    poses = [mujoco.MjData(one) for one in (model, plant.model)]
+    for one, data in zip((model, plant.model), poses, strict=True):
+        mujoco.mj_kinematics(one, data)
+    np.testing.assert_allclose(poses[0].xpos, poses[1].xpos, atol=1e-12)
+    assert poses[0].joint(joint).qpos[0] == pytest.approx(0.1)
+
+
+def test_a_constant_torque_is_beside_the_servos_limit():
+    """With a limit that both reach; the servo alone could not hold the joint."""
+    plant = load_plant("nao", "fixed")
+    effects = [
+        ("torque_limit", "LShoulderPitch", 0.4),
+        ("torque_offset", "LShoulderPitch", 0.3),
+    ]
+    # in the step in which a servo leaves its limit MuJoCo has it there to the end
+    check_same(plant, effects, atol=2e-4)
+    model = tuple(PlacedEffect(name, place, tuple(v)) for name, place, *v in effects)
+    servo = mujoco.MjModel.from_xml_string(corrected_mjcf(plant, model))
+    assert servo.actuator("LShoulderPitch").forcerange == pytest.approx((-0.1, 0.7))
+
+
+def read_late(plant, delay_s):
+    """(steps, j, 2) readings of corrected.xml's sensors, and what a replay shows."""
+    late = PlacedEffect("sensor_delay", "encoders", (delay_s,))
+    run = commanded_run(plant)
+    model = mujoco.MjModel.from_xml_string(corrected_mjcf(plant, (late,)))
+    data = mujoco.MjData(model)
+    actuators = [model.actuator(name).id for name in plant.joints]
+    found = []
+    for command in run.trace.command_rad:
+        mujoco.mj_forward(model, data)  # sensors show what was when it began
+        late_ones = data.sensordata[-2 * len(plant.joints) :]  # behind its own
+        found.append(late_ones.reshape(-1, 2).copy())
+        data.ctrl[actuators] = command
+        mujoco.mj_step(model, data, STEPS_PER_TICK)
+    one = replay([run], variants_of(plant, [(late,), ()]))[0]
+    return np.array(found), np.stack([one.position_rad, one.velocity_rad_s], axis=-1)
+
+
+@pytest.mark.parametrize(("delay_s", "atol"), [(0.02, 1e-9), (0.0133, 4e-5)])
+def test_late_encoders_are_sensors(delay_s, atol):
+    """Between steps MuJoCo takes another cubic than replays do."""
+    found, (late, prompt) = read_late(load_plant("nao", "fixed"), delay_s)
+    np.testing.assert_allclose(found[..., 0], late[..., 0], rtol=0, atol=atol)
+    np.testing.assert_allclose(found[..., 1], late[..., 1], rtol=0, atol=1e-4)
+    assert np.abs(found - prompt)[..., 0].max() > 0.01
+
+
+def test_encoders_late_by_less_than_half_a_step_have_no_sensors():
+    plant = load_plant("nao", "fixed")
+    late = PlacedEffect("sensor_delay", "encoders", (9e-4,))
+    model = mujoco.MjModel.from_xml_string(corrected_mjcf(plant, (late,)))
+    assert model.nsensor == plant.model.nsensor
+
+
 @pytest.mark.parametrize("delay_s", [-5e-4, 3e-4])
 def test_what_is_nearer_to_no_delay_than_to_a_step_is_none(delay_s):
     """A clock may seem to run ahead; MuJoCo would not move with a negative delay."""
@@ -115,6 +182,16 @@ def test_what_mujoco_lacks_is_left_out():
     text, without = corrected_mjcf(plant, (play,)), corrected_mjcf(plant, ())
     assert "MuJoCo lacks them: backlash@LKneePitch" in text
     assert text.partition("-->")[2] == without.partition("-->")[2]
+
+
+def test_of_friction_with_a_peak_the_rest_is_there():
+    plant = load_plant("nao", "fixed")
+    values = (0.1, 0.2, 0.05)
+    stribeck = PlacedEffect("stribeck_friction", "LKneePitch", values)
+    model = mujoco.MjModel.from_xml_string(corrected_mjcf(plant, (stribeck,)))
+    knee = model.joint("LKneePitch").dofadr[0]
+    assert model.dof_frictionloss[knee] == pytest.approx(0.1)
+    assert model.dof_frictionloss.sum() == pytest.approx(0.1)
 
 
 OWN = """<mujoco model="own">
