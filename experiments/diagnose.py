@@ -25,14 +25,13 @@ from diagnosis import (
     read_reference,
     read_traces,
 )
-from diagnosis.corrected.effects_json import CORRECTED_JSON, Correction
-from diagnosis.corrected.mjcf import CORRECTED_XML, corrected_mjcf
 from diagnosis.search.hooks import Saved
 from diagnosis.seen import Seen
 from diagnosis.traces.time_line import time_line
 from diagnosis.traces.trace import DriveBy
 from experiments.command_line import run_verb
 from experiments.diagnosis_report.console import print_verdict
+from experiments.diagnosis_report.corrected_files import FILES, write_correction
 from experiments.diagnosis_report.joints_shown import look_at
 from experiments.diagnosis_report.overlay import write_overlay
 from experiments.diagnosis_report.page import ReportFacts, write_report
@@ -223,8 +222,7 @@ def _write(
     """Write the verdict, then the report and the other files that explain it."""
     folder.write_text(VERDICT, found.verdict.to_json())
     folder.write_text(AUDIT, found.audit.to_json() + "\n")
-    with extra(CORRECTED_XML):
-        write_correction(folder, found)
+    write_correction(folder, found)
     advance()
     series = found.held_out()
     seen: Seen | None = None
@@ -242,17 +240,6 @@ def _write(
         about = fit, _description(config), told, words
         write_overlay(folder.path / OVERLAY, series, *about)
     advance()
-
-
-def write_correction(folder: RunFolder, found: Diagnosis) -> None:
-    """Write the model with the effects found, if any, into the run folder."""
-    if not found.verdict.effects:
-        return
-    first = found.test.traces[0]
-    servo = found.plant.servo if first.unheld else first.servo
-    model = (*found.given, *found.nuisance, *found.model)
-    folder.write_text(CORRECTED_XML, corrected_mjcf(found.plant, model, servo))
-    folder.write_text(CORRECTED_JSON, Correction.of(found.plant, model).to_json())
 
 
 def _description(config: Diagnose) -> robots.Description | None:
@@ -276,9 +263,7 @@ def _facts(config: Diagnose, folder: RunFolder, found: Diagnosis) -> ReportFacts
         AUDIT: "rate, noise and defects of the recordings",
         SEEN: "what each joint shows, before any effect is named",
     }
-    if found.verdict.effects:
-        files[CORRECTED_XML] = "the corrected model, with the effects that MuJoCo has"
-        files[CORRECTED_JSON] = "all effects found, for the option --sim"
+    files |= {name: what for name, what in FILES.items() if folder.has(name)}
     packages = {k: str(v) for k, v in provenance["packages"].items() if v}
     return ReportFacts(
         robot=shown(config.robot),

@@ -90,10 +90,14 @@ def friction_solver(
     """MuJoCo's `dof_solref` (nv, 2) and `dof_solimp` (nv, 5) in the diagnosis' replays.
 
     They make friction stop a joint within a step at all joints, also those whose own
-    softer parameters `corrected_mjcf` leaves as they are.
+    softer parameters `corrected_mjcf` leaves as they are. `model` are all effects: the
+    rotor of an elastic joint is no part of its link.
     """
+    variants = variants_of(plant, [model])
+    soft = np.isfinite(variants.joints.spring_nm_rad[0])
+    variants.field("dof_armature")[0, np.array(plant.dofs)[soft]] = 0.0
     compiled = plant.spec.compile()
-    _write_fields(compiled, variants_of(plant, [native_parts(model)]), servo, step_s)
+    _write_fields(compiled, variants, servo, step_s)
     return compiled.dof_solref.copy(), compiled.dof_solimp.copy()
 
 

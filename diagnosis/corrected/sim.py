@@ -172,7 +172,7 @@ class CorrectedSim(SimWorld):
     @staticmethod
     def _measured(laws: BatchLaws) -> tuple[FloatArray, FloatArray]:
         """Positions and velocities (n, j) that encoders without delay would report."""
-        return laws.encoder_rad().copy(), laws.joint_state()[1].copy()
+        return laws.encoder_rad().copy(), laws.encoder_rad_s().copy()
 
     def _read(self) -> tuple[Truth, Observation]:
         """Read truth and observation; sensor effects act on the observation only."""

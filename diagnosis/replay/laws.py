@@ -180,6 +180,11 @@ class BatchLaws:
         position = self._qpos[:, self._columns]
         return position if self._elastic is None else self._elastic.seen(position)
 
+    def encoder_rad_s(self) -> FloatArray:
+        """(n R, j) speeds [rad/s] of joints or, if elastic, of motors."""
+        velocity = self._qvel[:, self._dofs]
+        return velocity if self._elastic is None else self._elastic.seen_speed(velocity)
+
     def _rub(self, velocity: FloatArray, added_nm: FloatArray | float) -> None:
         """Set dry friction by joint speed and by the torque through the gear.
 

@@ -159,7 +159,7 @@ class Tape:
     def note(self, step: int) -> None:
         """Store the simulations' present state, the one after `step` physics steps."""
         batch = self._batch
-        _, self._velocity[step] = batch.laws.joint_state()
+        self._velocity[step] = batch.laws.encoder_rad_s()
         self._position[step] = batch.laws.encoder_rad()
         self._torque[step] = self._force[:, self._actuators]
         if self._base is not None:

@@ -66,7 +66,7 @@ class BatchServos:
         self.fades = bool(joints["fade_1_s"].any()) or self._goes_off
         self._step_s = step_s
         self._stiff = np.isinf(joints["spring_nm_rad"])
-        self.law = _laws(servos, joints)
+        self.law = servo_laws(servos, joints)
         self._full_kp = kp = self.law["kp"]
         self._full_kd = self.law["kd"]
         reach = self.law["limit"] / np.maximum(kp, LEAST_KP)
@@ -232,7 +232,7 @@ def first_share(mean_rad: FloatArray, ends: Ends) -> FloatArray:
     return np.divide(after - mean_rad, jump, out=nothing, where=jump != 0)
 
 
-def _laws(
+def servo_laws(
     servos: Sequence[Servo], joints: Mapping[str, FloatArray]
 ) -> dict[str, FloatArray]:
     """Gains and limits (rows, j) of the runs' servos, changed as the variants say."""

@@ -96,6 +96,12 @@ class ElasticJoints:
             return position_rad
         return np.where(self.soft, self._angle, position_rad)
 
+    def seen_speed(self, velocity_rad_s: FloatArray) -> FloatArray:
+        """(rows, j) speeds [rad/s] that encoders see: of motors at elastic joints."""
+        if self._angle is None:
+            return velocity_rad_s
+        return np.where(self.soft, self._speed, velocity_rad_s)
+
 
 class BatchGaps:
     """Motors that turn freely within their gaps until they touch the joint.

@@ -11,6 +11,7 @@ ROOMS = (
 )  # fmt: skip
 HOMES = ("diagnosis/effects/", "worlds/hidden/effects/")
 DATA = {
+    "diagnosis/corrected/joint_table.py": "a column, as other simulators call it",
     "experiments/concealed/draw.py": "pairs that are drawn together",
     "experiments/concealed/doctored/case.py": "what undoes a doctored label",
     "experiments/concealed/doctored/models.py": "what is taken from a model",
