@@ -177,7 +177,9 @@ def _shift_zeros(compiled: mujoco.MjModel, variants: Variants) -> None:
     for name, qpos, shift in zip(plant.joints, plant.qpos, offset, strict=True):
         compiled.qpos0[qpos] += shift
         compiled.qpos_spring[qpos] += shift
-        compiled.jnt_range[compiled.joint(name).id] += shift
+        joint = compiled.joint(name).id
+        if compiled.jnt_limited[joint]:
+            compiled.jnt_range[joint] += shift
 
 
 def _add_constant_torques(compiled: mujoco.MjModel, variants: Variants) -> None:

@@ -192,8 +192,19 @@ def _effect_row(effect: Found) -> dict[str, Any]:
         "when": times,
         "instead": ", ".join(map(at_words, effect.confusable_with)) or DASH,
         "meaning": kind_of(effect.name).words.meaning,
-        "native": effect.native,
+        "how": _how_simulated(effect),
     }
+
+
+def _how_simulated(effect: Found) -> str:
+    """Which file simulates an effect that MuJoCo lacks; "" if MuJoCo has it."""
+    if effect.native:
+        return ""
+    lacking, only = "MuJoCo does not have it", effect.when.recording
+    why = f"it happened in {only} only" if only else kind_of(effect.name).no_law
+    if why:
+        return f"{lacking}, and no file for other simulators does: {why}."
+    return f"{lacking}: corrected_laws.py adds it before each step."
 
 
 def _label_and_place(name: str, place: str) -> dict[str, str]:

@@ -60,6 +60,10 @@ def _xml(path):
     assert root.tag in ("robot", "mujoco"), path
 
 
+def _python(path):
+    compile(path.read_text(), path.name, "exec")
+
+
 def _text(path):
     assert path.read_text().strip(), path
 
@@ -68,6 +72,7 @@ OPENERS = {
     ".json": _json, ".html": _html, ".md": _markdown, ".png": _picture,
     ".gif": _picture, ".parquet": _recording, ".csv": _csv, ".rrd": _rerun,
     ".urdf": _xml, ".xml": _xml, ".sha256": _text,
+    ".py": _python,
 }  # fmt: skip
 
 

@@ -24,6 +24,9 @@ PREDICTED = (
     "report.html", "result.json", "result.md", "audit.json", "config.json",
     "provenance.json", "channel_1.png",
 )  # fmt: skip
+CORRECTED = (
+    "corrected.xml", "corrected.json", "corrected_laws.py", "test_corrected_laws.py",
+)  # fmt: skip
 DIAGNOSED = ("report.html", "diagnosis.json", "audit.json", "overlay.rrd")
 
 
@@ -37,6 +40,9 @@ REAL = NotRun(
     says="nowhere",
 )
 """Without the recordings there is one clear line."""
+
+PYTHON_AFTERWARDS = {"diagnosis.md": ("the knee is at 0.", "")}
+"""Pages whose Python uses what their commands wrote: what each block must print."""
 
 JOURNEYS: dict[str, dict[str, Step]] = {
     "README.md": {
@@ -182,8 +188,12 @@ JOURNEYS: dict[str, dict[str, Step]] = {
             "--duration 9", writes=("knee.parquet",)
         ),
         "groundwalk diagnose knee.parquet --robot nao --out runs/knee": Run(
-            writes=below("runs/knee", (*DIAGNOSED, "corrected.json")), says="LKneePitch"
+            writes=below("runs/knee", (*DIAGNOSED, *CORRECTED)), says="LKneePitch"
         ),
+        "python -m mujoco.viewer --mjcf=runs/knee/corrected.xml": NotRun(
+            "it opens a window", "python -m mujoco.viewer --help", says="--mjcf"
+        ),
+        "python -m pytest runs/knee": Run(says="2 passed"),
         "groundwalk optimize-gait --sim runs/knee": Run(
             f"{SEARCH} --out runs/tuned", writes=("runs/tuned/report.html",)
         ),
@@ -201,7 +211,8 @@ JOURNEYS: dict[str, dict[str, Step]] = {
             writes=below("runs/predicted", PREDICTED),
             says="holds: the corrected sim's error is",
         ),
-        "groundwalk diagnose air.parquet --robot nao": NotRun(
+        "groundwalk list servos": Run(says="sts3215"),
+        "groundwalk diagnose air.parquet": NotRun(
             "how commands look in general; those above are of this kind",
             "groundwalk diagnose --help",
             says="--reference",

@@ -3,9 +3,9 @@
 import pytest
 from foreign_things import write_foreign_things
 from made_up_urdf import two_legged
-from steps import JOURNEYS, NotRun
+from steps import JOURNEYS, PYTHON_AFTERWARDS, NotRun, Run
 from travel import ROOT, take
-from typed_pages import PAGES, typed
+from typed_pages import PAGES, blocks, typed
 
 pytestmark = pytest.mark.slow
 
@@ -21,6 +21,11 @@ def test_a_page(page, tmp_path):
     write_foreign_things(tmp_path)
     for command in typed(page):
         take(tmp_path, command, JOURNEYS[page.name][command])
+    if page.name in PYTHON_AFTERWARDS:
+        codes, told = blocks(page, "python"), PYTHON_AFTERWARDS[page.name]
+        for code, says in zip(codes, told, strict=True):
+            (tmp_path / "typed.py").write_text(code)
+            take(tmp_path, "python typed.py", Run(says=says))
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)

@@ -119,6 +119,16 @@ def test_an_encoders_zero_alone(joint):
     assert poses[0].joint(joint).qpos[0] == pytest.approx(0.1)
 
 
+def test_a_joint_without_a_range_gets_none_with_another_zero(tmp_path):
+    path = tmp_path / "arm.xml"
+    path.write_text(OWN)
+    plant = load_plant(path, "fixed")
+    off = PlacedEffect("encoder_offset", "elbow", (0.1,))
+    model = mujoco.MjModel.from_xml_string(corrected_mjcf(plant, (off,)))
+    assert not model.jnt_limited.any()
+    assert model.qpos0 == pytest.approx([0, 0.1])
+
+
 def test_a_constant_torque_is_beside_the_servos_limit():
     """With a limit that both reach; the servo alone could not hold the joint."""
     plant = load_plant("nao", "fixed")

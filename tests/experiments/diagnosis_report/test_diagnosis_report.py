@@ -63,7 +63,7 @@ def test_tags_that_do_not_match_are_seen():
                 "97 % sure; the recordings do not rule out dry friction at the left "
                 "knee (LKneePitch) instead.",
                 "Record slow ramps with reversals of the left knee",
-                "MuJoCo does not have it",
+                "MuJoCo does not have it: corrected_laws.py adds it before each step.",
                 "rotor inertia below 0.002 kg m²",
                 "halving it changes 0.04 mrad",
                 "control: the same effect at another place",
