@@ -4,10 +4,10 @@ from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 from diagnosis import Verdict
-from diagnosis.corrected.effects_json import CORRECTED_JSON
 from diagnosis.corrected.mjcf import CORRECTED_XML
 from diagnosis.effects import effect as kind_of
 from diagnosis.verdict import Found
+from experiments.diagnosis_report.corrected_files import how_simulated, why_in_no_file
 from experiments.diagnosis_report.findings import told_together
 from experiments.diagnosis_report.place_words import at_words
 
@@ -42,7 +42,6 @@ def advised(verdict: Verdict) -> Iterator[Advice]:
 def _in_sim(group: Sequence[Found]) -> str:
     if all(one.native for one in group):
         return f"Or let the sim have it: {CORRECTED_XML} does."
-    return (
-        f"Or let the sim have it, at every step: MuJoCo has no such thing, "
-        f"{CORRECTED_JSON} says how much."
-    )
+    lacking = next(one for one in group if not one.native)
+    told = how_simulated(lacking)
+    return told if why_in_no_file(lacking) else f"Or let the sim have it. {told}"

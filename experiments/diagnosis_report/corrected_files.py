@@ -13,6 +13,8 @@ from diagnosis.corrected.laws_test_file import (
     text_of_test,
 )
 from diagnosis.corrected.mjcf import CORRECTED_XML, corrected_mjcf
+from diagnosis.effects import effect
+from diagnosis.verdict import Found
 from experiments.runs.extras import extra
 from experiments.runs.folder import RunFolder
 from groundwalk.files import write_bytes
@@ -25,6 +27,24 @@ FILES: Mapping[str, str] = {
     CORRECTED_JSON: "all effects found, for the option --sim",
 }
 """What each of the files is, by its name; a run has some of them or none."""
+
+
+def how_simulated(found: Found) -> str:
+    """Which file simulates an effect that MuJoCo lacks; "" if MuJoCo has it."""
+    if found.native:
+        return ""
+    lacking, why = "MuJoCo does not have it", why_in_no_file(found)
+    if why:
+        return f"{lacking}, and no file for other simulators does: {why}."
+    return f"{lacking}: {CORRECTED_LAWS} adds it before each step."
+
+
+def why_in_no_file(found: Found) -> str:
+    """Why no file for other simulators has an effect; "" if one does."""
+    if found.native:
+        return ""
+    only = found.when.recording
+    return f"it happened in {only} only" if only else effect(found.name).no_law
 
 
 def write_correction(folder: RunFolder, found: Diagnosis) -> None:

@@ -13,6 +13,7 @@ from diagnosis.seen import Seen
 from diagnosis.traces.time_line import Stretch
 from diagnosis.verdict import Errors, Fit, Found
 from experiments.diagnosis_report.advice import advised
+from experiments.diagnosis_report.corrected_files import how_simulated
 from experiments.diagnosis_report.figure_style import inline_svg
 from experiments.diagnosis_report.figures import (
     bars_figure,
@@ -192,19 +193,8 @@ def _effect_row(effect: Found) -> dict[str, Any]:
         "when": times,
         "instead": ", ".join(map(at_words, effect.confusable_with)) or DASH,
         "meaning": kind_of(effect.name).words.meaning,
-        "how": _how_simulated(effect),
+        "how": how_simulated(effect),
     }
-
-
-def _how_simulated(effect: Found) -> str:
-    """Which file simulates an effect that MuJoCo lacks; "" if MuJoCo has it."""
-    if effect.native:
-        return ""
-    lacking, only = "MuJoCo does not have it", effect.when.recording
-    why = f"it happened in {only} only" if only else kind_of(effect.name).no_law
-    if why:
-        return f"{lacking}, and no file for other simulators does: {why}."
-    return f"{lacking}: corrected_laws.py adds it before each step."
 
 
 def _label_and_place(name: str, place: str) -> dict[str, str]:

@@ -26,7 +26,11 @@ def test_advice_says_where_the_correction_is():
     assert "rubs" in rub.robot
     assert "corrected.xml" in rub.sim
     (play,) = advised(Verdict("effects", effects=(made_up.PLAY,)))
-    assert "corrected.json" in play.sim
+    assert play.sim.startswith("Or let the sim have it. MuJoCo does not have it: ")
+    assert "corrected_laws.py" in play.sim
+    bumps = Found("uneven_ground", "world", {}, 0.9, native=False)
+    (one,) = advised(Verdict("effects", effects=(bumps,)))
+    assert one.sim.startswith("MuJoCo does not have it, and no file")
 
 
 def test_the_same_at_many_places_is_one_advice():

@@ -3,7 +3,7 @@
 import pytest
 
 from diagnosis.verdict import Found, When
-from experiments.diagnosis_report.page import _how_simulated
+from experiments.diagnosis_report.corrected_files import how_simulated
 
 KICK = When("burst", 1.0, 1.2, "kicked")
 
@@ -25,6 +25,6 @@ KICK = When("burst", 1.0, 1.2, "kicked")
     ids=lambda one: getattr(one, "name", ""),
 )
 def test_the_file_or_the_reason(found, says):
-    told = _how_simulated(found)
+    told = how_simulated(found)
     assert says in told
     assert bool(told) == bool(says)
