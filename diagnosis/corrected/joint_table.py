@@ -76,26 +76,25 @@ def joints_csv(
 def _at_ends(plant: Plant, model: Model, found: Found) -> list[Model]:
     """The model with each value of one effect at both ends of its interval.
 
-    Low and high end follow each other.
+    Low and high end follow each other. Of equal effects at one place the last one is
+    meant: those that the healthy robot had come first.
     """
+    keys = [(placed.name, placed.place) for placed in model]
+    if (found.name, found.place) not in keys:
+        return []
+    at = len(keys) - 1 - keys[::-1].index((found.name, found.place))
     names = [one.name for one in effect(found.name).parameters(plant, found.place)]
-    changed = list[Model]()
-    for at, placed in enumerate(model):
-        if (placed.name, placed.place) != (found.name, found.place):
-            continue
-        for index, name in enumerate(names):
-            estimate = found.parameters[name]
-            for end in (estimate.low, estimate.high):
-                changed.append(_with(model, at, placed, index, end))
-    return changed
+    estimates = [found.parameters[name] for name in names]
+    return [
+        (*model[:at], _with(model[at], index, end), *model[at + 1 :])
+        for index, estimate in enumerate(estimates)
+        for end in (estimate.low, estimate.high)
+    ]
 
 
-def _with(
-    model: Model, at: int, placed: PlacedEffect, index: int, value: float
-) -> Model:
-    values = [*placed.values[:index], value, *placed.values[index + 1 :]]
-    other = replace(placed, values=tuple(values))
-    return (*model[:at], other, *model[at + 1 :])
+def _with(placed: PlacedEffect, index: int, value: float) -> PlacedEffect:
+    values = (*placed.values[:index], value, *placed.values[index + 1 :])
+    return replace(placed, values=values)
 
 
 def _values(variants: Variants, servo: Servo) -> dict[str, FloatArray]:

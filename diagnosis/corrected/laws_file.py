@@ -130,7 +130,8 @@ def _docstring(plant: Plant, model: Model) -> str:
         "  >>> angle, speed = laws.readings()"
         f'["{plant.joints[0]}"]  # as the encoder shows them',
     ]
-    return "\n".join(lines) + "\n"
+    told = "\n".join(lines) + "\n"
+    return told.replace("\\", "/").replace('"' * 3, '"')  # names may hold anything
 
 
 def _told(placed: PlacedEffect) -> str:

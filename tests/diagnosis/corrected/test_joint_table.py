@@ -75,6 +75,17 @@ def test_values_add_to_the_models_and_intervals_come_from_the_effects(arm):
     assert elbow["slides"] == "no"
 
 
+def test_the_interval_is_that_of_what_is_new(arm):
+    """The healthy robot had some of it, which is taken as given."""
+    rub = "coulomb_friction"
+    model = PlacedEffect(rub, ELBOW, (0.1,)), PlacedEffect(rub, ELBOW, (0.2,))
+    found = [Found(rub, ELBOW, {"torque": estimate(0.2, 0.15, 0.3)}, 0.9)]
+    cells = three(table(arm, model, found)[ELBOW], "friction", "N m")
+    assert [float(cell) for cell in cells] == pytest.approx([0.3, 0.25, 0.4])
+    elsewhere = [Found(rub, "gripper", {"torque": estimate(0.2, 0.1, 0.3)}, 0.9)]
+    assert three(table(arm, model, elsewhere)[ELBOW], "friction", "N m")[1:] == ["", ""]
+
+
 FACTORS = 17.0, 0.6, 2.9, 0.3
 """The servo's kp, kd, limit and back-EMF."""
 
