@@ -47,7 +47,8 @@ def joints_csv(
     no effect changes the value of the nominal model. `damping` includes the motor's
     back-EMF, `friction` is dry friction in motion, `kp` and `kd` are the servo's gains,
     and `delay` is that of commands. What depends on load, play and springs in gears
-    have no column.
+    have no column. No value is below 0, as other simulators demand: small mismatch of a
+    link's inertia may have made its armature negative.
 
     Args:
       plant: the nominal robot model.
@@ -103,8 +104,8 @@ def _values(variants: Variants, servo: Servo) -> dict[str, FloatArray]:
     law = servo_laws([servo], vars(joints))
     emf = law["emf"] - plant.servo.back_emf_nm_s_rad
     friction = _of_dofs(variants, "dof_frictionloss") + joints.coulomb_nm
-    delay_s = np.maximum(variants.signals.command_delay_s, 0.0)[:, None]
-    return {
+    delay_s = variants.signals.command_delay_s[:, None]
+    found = {
         "armature": _of_dofs(variants, "dof_armature"),
         "damping": _of_dofs(variants, "dof_damping") + emf,
         "friction": friction,
@@ -114,6 +115,7 @@ def _values(variants: Variants, servo: Servo) -> dict[str, FloatArray]:
         "torque limit": law["limit"],
         "delay": np.broadcast_to(delay_s, law["kp"].shape),
     }
+    return {name: np.maximum(values, 0.0) for name, values in found.items()}
 
 
 def _of_dofs(variants: Variants, name: str) -> FloatArray:

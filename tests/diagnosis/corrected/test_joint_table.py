@@ -86,6 +86,14 @@ def test_the_interval_is_that_of_what_is_new(arm):
     assert three(table(arm, model, elsewhere)[ELBOW], "friction", "N m")[1:] == ["", ""]
 
 
+def test_nothing_is_below_zero(arm):
+    """Clocks may be early, and links lighter than their model."""
+    lighter = PlacedEffect("armature", ELBOW, (-1e-4,))
+    early = PlacedEffect("command_latency", "commands", (-2e-4,))
+    row = table(arm, (lighter, early), [])[ELBOW]
+    assert (row["armature [kg m^2]"], row["delay [s]"]) == ("0", "0")
+
+
 FACTORS = 17.0, 0.6, 2.9, 0.3
 """The servo's kp, kd, limit and back-EMF."""
 
