@@ -18,11 +18,14 @@ from diagnosis.corrected.laws.elastic import ElasticDrive
 from diagnosis.corrected.laws.gyroscope import GyroscopeBias
 from diagnosis.corrected.laws.outside import Drag, Push
 from diagnosis.corrected.laws.play import Play
+from diagnosis.corrected.laws.presliding import Presliding
+from diagnosis.corrected.laws.ripple import Ripple
 from diagnosis.corrected.laws.saturation import Saturation
 from diagnosis.corrected.laws.step import Joint, Law, Step
 from diagnosis.corrected.laws.weak_servo import WeakServo
 from diagnosis.effects.library import effect
 from diagnosis.effects.parts import PlacedEffect
+from diagnosis.effects.ripple import Cogging
 from diagnosis.effects.variants import Variants
 from diagnosis.plant.plant import Plant
 from diagnosis.plant.servo import Servo
@@ -41,6 +44,8 @@ NAMES: Mapping[type[Law], str] = {
     WeakServo: "WEAK_SERVOS",
     DryFriction: "DRY_FRICTION",
     Play: "PLAY",
+    Ripple: "RIPPLES",
+    Presliding: "PRESLIDING",
     ElasticDrive: "ELASTIC_DRIVES",
     Saturation: "SATURATION",
     Push: "PUSHES",
@@ -157,7 +162,7 @@ def _each(
     for column, name in enumerate(plant.joints):
         own = {key: float(v[0, column]) for key, v in vars(variants.joints).items()}
         rotor = float(armature[0, plant.dofs[column]])
-        late_s = float(signals.sensor_delay_s[0])
+        late_s = float(variants.late_s[0, column])
         laws = list(_of_joint(own, rotor, max(late_s, 0.0)))
         if saturates[column] and np.isinf(own["spring_nm_rad"]):
             laws.append((Saturation, {}))
@@ -168,6 +173,7 @@ def _each(
     if acts_on_commands and delay_s > 0:  # no longer the actuators' affair
         for name in plant.joints:
             yield LateCommand, {"joint": name, "delay_s": delay_s}
+    yield from _ripples(variants)
     bias = [float(one) for one in signals.gyro_bias_rad_s[0]]
     if any(bias):
         yield GyroscopeBias, dict(zip("xyz", bias, strict=True))
@@ -176,6 +182,19 @@ def _each(
     for body in np.flatnonzero(variants.outside.drag_n_s_m[0]):
         drag = float(variants.outside.drag_n_s_m[0, body])
         yield Drag, {"body": plant.model.body(body).name, "coefficient_n_s_m": drag}
+
+
+def _ripples(variants: Variants) -> Iterator[tuple[type[Law], dict[str, Any]]]:
+    """Ripples of the only variant, at the joints that have any."""
+    names = ("torque_nm", "per_turn", "phase_rad")
+    offset = variants.joints.offset_rad[0]
+    for kind, torques in variants.torques.items():
+        if not isinstance(kind, Cogging):
+            continue
+        for column in np.flatnonzero(torques[0, :, 0]).tolist():
+            own = dict(zip(names, map(float, torques[0, column]), strict=True))
+            own["offset_rad"] = float(offset[column])
+            yield Ripple, {"joint": variants.plant.joints[column], **own}
 
 
 def _of_joint(
@@ -196,6 +215,9 @@ def _of_joint(
                 "load_share": own["load_share"],
             },
         )
+    if own["slip_nm"]:
+        values = {"torque_nm": own["slip_nm"], "reach_rad": own["slip_rad"]}
+        yield Presliding, values
     if own["gap_rad"]:
         yield Play, {"gap_rad": own["gap_rad"]}
     if np.isfinite(own["spring_nm_rad"]):

@@ -65,7 +65,7 @@ def corrected_mjcf(
     spec.copy_back(compiled)
     signals = variants.signals
     _delay_commands(spec, float(signals.command_delay_s[0]), step_s)
-    _delay_readings(spec, plant.joints, float(signals.sensor_delay_s[0]), step_s)
+    _delay_readings(spec, plant.joints, variants.late_s[0], step_s)
     folder = Path(spec.modelfiledir or ".").resolve()
     spec.meshdir = str(folder / spec.meshdir) if spec.meshes else spec.meshdir
     with _all_digits():
@@ -113,7 +113,7 @@ def _comment(variants: Variants, native: Model, model: Model) -> str:
     """XML comment on how the corrected MJCF differs from the nominal robot model."""
     plant = variants.plant
     others = [placed.key for placed in model if placed not in native]
-    late = variants.signals.sensor_delay_s[0] > 0
+    late = bool((variants.late_s[0] > 0).any())
     rub = [plant.joints[i] for i in np.flatnonzero(_rubs(variants_of(plant, [model])))]
     lines = [
         f"{plant.name} with the effects that groundwalk diagnose found.",
@@ -206,16 +206,16 @@ def _delay_commands(spec: mujoco.MjSpec, delay_s: float, step_s: float) -> None:
 
 
 def _delay_readings(
-    spec: mujoco.MjSpec, joints: Sequence[str], delay_s: float, step_s: float
+    spec: mujoco.MjSpec, joints: Sequence[str], late_s: FloatArray, step_s: float
 ) -> None:
-    """Add sensors of joints' positions and velocities that are late, as encoders are.
+    """Add sensors of joints' positions and velocities that are late by (j,) times.
 
     As of commands, a delay of less than half a step is left out.
     """
-    if delay_s < step_s / 2:
-        return
     kinds = mujoco.mjtSensor
-    for name in joints:
+    for name, delay_s in zip(joints, late_s.tolist(), strict=True):
+        if delay_s < step_s / 2:
+            continue
         for quantity, kind, interpolation in (
             ("position", kinds.mjSENS_JOINTPOS, _CUBIC),
             ("velocity", kinds.mjSENS_JOINTVEL, _LINEAR),

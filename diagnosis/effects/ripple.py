@@ -31,6 +31,7 @@ class Cogging(TorqueEffect):
     """
 
     name = "cogging"
+    no_law = ""
     of_motor = False
     shown_by = "poses"
     main_parameters = ("torque",)

@@ -97,12 +97,14 @@ class LateReading(NumberEffect, JointEffect):
     servo alone gets late looks the same, too, but for what its joint does to others,
     which hardly shows where servos are stiff.
 
+    In MuJoCo the `delay` of a sensor.
+
     Source: round-robin polling, as in the protocols of Dynamixel and Feetech servos;
     transfer function exp(-s delay), Astrom and Murray 2008, "Feedback systems".
     """
 
     name = "late_reading"
-    native = False
+    native = True
     shown_by = "accelerations"
     of_motor = False
     rarity_nats = 1.0

@@ -39,6 +39,8 @@ ALONE = [
     ("servo_off", KNEE, 0.8, 0.503, 0.3),
     ("external_force", "LTibia", 3.0, 0.0, 5.0, 0.503, 0.3),
     ("drag", "RForeArm", 5.0),
+    ("presliding", KNEE, 0.5, 0.05),
+    ("cogging", KNEE, 0.3, 12.0, 0.5),
 ]
 """Each effect that moves a robot and that MuJoCo lacks."""
 
@@ -51,6 +53,10 @@ TOGETHER = {
         ("stribeck_friction", KNEE, 0.1, 0.2, 0.1), ("load_friction", KNEE, 0.2),
         ("coulomb_friction", KNEE, 0.05), ("torque_offset", KNEE, 0.3),
         ("servo_damping", KNEE, 1.4),
+    ],
+    "presliding and a ripple behind a wrong zero": [
+        ("presliding", KNEE, 0.3, 0.02), ("cogging", KNEE, 0.3, 12.0, 0.5),
+        ("encoder_offset", KNEE, 0.1), ("coulomb_friction", ARM, 0.1),
     ],
     "weak, with play": [("torque_limit", KNEE, 0.8), PLAY],
     "weak and elastic": [("torque_limit", KNEE, 0.8), *SPRING],
@@ -232,3 +238,13 @@ def test_an_unnamed_joint_keeps_its_target(nao):
         laws.before_step(targets)
         assert data.ctrl[number] == pytest.approx(wanted)
         mujoco.mj_step(model, data)
+
+
+def test_a_joint_that_is_read_late_has_late_sensors(nao):
+    late, run = model_of(("late_reading", KNEE, 0.0133)), commanded(nao)
+    found, prompt = (stepped(nao, model, run, 1e-3)[0] for model in (late, ()))
+    wanted = replay([run], variants_of(nao, [late]), 1e-3)[0].position_rad[0]
+    knee = nao.joints.index(KNEE)
+    assert np.abs(found - wanted)[5:].max() < 2e-5
+    assert np.abs(found - prompt)[:, knee].max() > 1e-3
+    assert np.abs(np.delete(found - prompt, knee, axis=1)).max() < 1e-9
