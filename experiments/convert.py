@@ -20,7 +20,14 @@ from groundwalk.errors import (
     nearest_name,
 )
 from worlds import Recording, RecordingMetadata, ServoGains
-from worlds.foreign import BagOptions, ForeignRecording, Kind, LeRobotOptions, kind_of
+from worlds.foreign import (
+    BagOptions,
+    ForeignRecording,
+    Kind,
+    LeRobotOptions,
+    kind_of,
+    sources_in,
+)
 from worlds.foreign.bag_recording import Clock, read_bag
 from worlds.foreign.bam import read_bam
 from worlds.foreign.lerobot import read_lerobot
@@ -56,7 +63,8 @@ class Convert:
     data sets, logs of BAM (.json) and data of PACE (.npz).
 
     Attributes:
-      sources: the files and folders.
+      sources: the files and folders; of a folder that is no bag or data set itself all
+        files are taken whose kind is known.
       out: the file to write, .parquet or .csv; or a folder for all recordings.
       format: kind of the files in a folder.
       robot: name of the robot or its model file, whose joints the recording must have.
@@ -118,7 +126,7 @@ class Convert:
             raise BadValueError(
                 f"out is {self.out}; give a .parquet, a .csv or a folder"
             )
-        kinds = {kind_of(source) for source in self.sources}
+        kinds = {kind_of(source) for source in self.every_source}
         for option, meant_for in FOR_KINDS.items():
             given = (
                 getattr(self, option) != type(self).__dataclass_fields__[option].default
@@ -129,6 +137,11 @@ class Convert:
                     f"{' or '.join(meant_for)}"
                 )
         _ = self.gains, self.new_names  # they refuse wrong values
+
+    @property
+    def every_source(self) -> list[Path]:
+        """The sources, with those in a folder that is none itself."""
+        return list(chain.from_iterable(map(sources_in, self.sources)))
 
     @property
     def is_file(self) -> bool:
@@ -171,7 +184,7 @@ def convert(config: Convert) -> dict[Path, Recording]:
       GroundwalkError: a source cannot be read, is ambiguous, or a file exists already;
         nothing is written then.
     """
-    found = list(chain.from_iterable(_read(config, one) for one in config.sources))
+    found = list(chain.from_iterable(_read(config, one) for one in config.every_source))
     named = [one.renamed(config.new_names) for one in found]
     recordings = dict(
         zip(

@@ -8,7 +8,7 @@ import pytest
 from foreign_files import joint_state, states, write_bag, write_lerobot
 
 from experiments.convert import Convert, convert, main
-from groundwalk.errors import GroundwalkError
+from groundwalk.errors import ForeignFileError, GroundwalkError
 from worlds import read_recording
 
 LOG = "t_ms,q_swing_deg,cmd_swing_deg,heat\n" + "".join(
@@ -108,6 +108,19 @@ def test_each_episode_gets_a_file(tmp_path):
         convert(config)
     with pytest.raises(GroundwalkError, match="2 recordings: give a folder"):
         convert(Convert((tmp_path / "set",), tmp_path / "a.csv", unit=(("deg",),)))
+
+
+def test_a_folder_of_tables_is_read_file_by_file(log, tmp_path):
+    folder = tmp_path / "logs"
+    folder.mkdir()
+    for name in ("b.csv", "a.csv"):
+        (folder / name).write_text(log.read_text())
+    (folder / "notes.md").write_text("no recording")
+    convert(Convert((folder,), tmp_path / "new", yes=True))
+    assert left(tmp_path / "new") == ["a.parquet", "b.parquet"]
+    (tmp_path / "empty").mkdir()
+    with pytest.raises(ForeignFileError, match="nor a file that is read"):
+        Convert((tmp_path / "empty",), tmp_path / "other")
 
 
 @pytest.mark.parametrize(

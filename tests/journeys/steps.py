@@ -137,6 +137,30 @@ JOURNEYS: dict[str, dict[str, Step]] = {
         "--out ramps.parquet": Run(writes=("ramps.parquet",), says="2401 ticks"),
         "groundwalk check slow.parquet ramps.parquet": Run(says="can be diagnosed"),
     },
+    "your_robot.md": {
+        "groundwalk convert logs --robot my_arm.urdf --servo mx-64@12V,P=32 "
+        "--out recordings --yes": Run(
+            writes=below("recordings", ("chirp.parquet", "ramps.parquet")),
+            says="joints shoulder, elbow, wrist",
+        ),
+        "groundwalk check recordings --out runs/check": Run(
+            writes=below("runs/check", ("report.html", "next/chirp.csv")),
+            says="can be diagnosed",
+        ),
+        "groundwalk diagnose recordings --out runs/arm": Run(
+            writes=below("runs/arm", (*DIAGNOSED, "corrected.xml", "corrected.json")),
+            says="dry friction at the joint elbow: torque 0.2",
+        ),
+        "groundwalk convert tuesday.csv --robot my_arm.urdf --servo mx-64@12V,P=32 "
+        "--out tuesday.parquet --yes": Run(writes=("tuesday.parquet",)),
+        "groundwalk predict runs/arm tuesday.parquet --out runs/tuesday": Run(
+            writes=("runs/tuesday/report.html",), says="judgement   holds"
+        ),
+        "groundwalk list servos": Run(says="mx-64"),
+        "python -m mujoco.viewer --mjcf=runs/arm/corrected.xml": NotRun(
+            "it opens a window", "python -m mujoco.viewer --help", says="--mjcf"
+        ),
+    },
     "concealed.md": {
         "groundwalk concealed make set": Run(
             "--cases 1 --seed 3",

@@ -3,6 +3,7 @@
 import pytest
 from foreign_things import write_foreign_things
 from made_up_urdf import two_legged
+from own_arm import write_own_arm
 from steps import JOURNEYS, PYTHON_AFTERWARDS, NotRun, Run
 from travel import ROOT, take
 from typed_pages import PAGES, blocks, typed
@@ -19,6 +20,7 @@ def test_a_page(page, tmp_path):
     (tmp_path / "docs").symlink_to(ROOT / "docs")
     (tmp_path / "my_robot.urdf").write_text(two_legged())
     write_foreign_things(tmp_path)
+    write_own_arm(tmp_path)
     for command in typed(page):
         take(tmp_path, command, JOURNEYS[page.name][command])
     if page.name in PYTHON_AFTERWARDS:

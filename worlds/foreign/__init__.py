@@ -16,7 +16,7 @@ from groundwalk.faces import lazy_face
 if TYPE_CHECKING:
     from worlds.foreign.bag_recording import BagOptions, read_bag
     from worlds.foreign.bam import read_bam
-    from worlds.foreign.kinds import Kind, kind_of
+    from worlds.foreign.kinds import Kind, kind_of, sources_in
     from worlds.foreign.lerobot import LeRobotOptions, read_lerobot
     from worlds.foreign.mapping import Entry, plan
     from worlds.foreign.pace import read_pace
@@ -37,6 +37,7 @@ __all__ = [
     "read_lerobot",
     "read_pace",
     "read_table",
+    "sources_in",
 ]
 
 __getattr__ = lazy_face(
@@ -44,7 +45,7 @@ __getattr__ = lazy_face(
     {
         "bag_recording": ["BagOptions", "read_bag"],
         "bam": ["read_bam"],
-        "kinds": ["Kind", "kind_of"],
+        "kinds": ["Kind", "kind_of", "sources_in"],
         "lerobot": ["LeRobotOptions", "read_lerobot"],
         "mapping": ["Entry", "plan"],
         "pace": ["read_pace"],

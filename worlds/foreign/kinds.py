@@ -18,6 +18,31 @@ _ENDINGS: dict[str, Kind] = {
     ".pt": "pace",
 }
 
+_MARKS: dict[str, Kind] = {"meta/info.json": "lerobot", "metadata.yaml": "bag"}
+"""Files by which folders that are one source are known."""
+
+
+def sources_in(path: Path) -> list[Path]:
+    """A source itself, or the files of known kinds in a folder that is none, by name.
+
+    Raises:
+      ForeignFileError: a folder is no source, and holds none.
+
+    Example:
+      >>> sources_in(Path("logs"))
+      [PosixPath('logs/chirp.csv'), PosixPath('logs/ramps.csv')]
+    """
+    if not path.is_dir() or any((path / one).is_file() for one in _MARKS):
+        return [path]
+    found = sorted(one for one in path.iterdir() if one.suffix.lower() in _ENDINGS)
+    if not found:
+        raise ForeignFileError(
+            f"{path}: neither a bag (metadata.yaml), nor a LeRobot data set "
+            f"(meta/info.json), nor a file that is read ({', '.join(_ENDINGS)}) is in "
+            "this folder"
+        )
+    return found
+
 
 def kind_of(path: Path) -> Kind:
     """The kind of a source, from its ending or from what a folder holds.
@@ -28,10 +53,9 @@ def kind_of(path: Path) -> Kind:
     if not path.exists():
         raise ForeignFileError(f"{path}: no such file or folder")
     if path.is_dir():
-        if (path / "meta" / "info.json").is_file():
-            return "lerobot"
-        if (path / "metadata.yaml").is_file():
-            return "bag"
+        for mark, kind in _MARKS.items():
+            if (path / mark).is_file():
+                return kind
         raise ForeignFileError(
             f"{path}: neither a bag (metadata.yaml) nor a LeRobot data set "
             "(meta/info.json) is in this folder"
