@@ -13,7 +13,7 @@ KP, BACK_EMF, MAX_TORQUE, ROTOR = 24.92, 0.6662, 4.744, 0.01195
 """MX-64 at 12 V with a P gain of 32, from kt = 1.622 N m/A and R = 3.949 ohm."""
 FRICTION_NM = 0.25
 """Dry friction of the elbow, of which the URDF knows nothing."""
-STEP_S, TICK_S, DURATION_S, NOISE_RAD = 2e-5, 0.01, 5.0, 3e-4
+STEP_S, TICK_S, DURATION_S, NOISE_RAD = 2e-5, 0.01, 8.0, 3e-4
 JOINTS = ("shoulder", "elbow", "wrist")
 LINKS = ((0.22, 0.45), (0.18, 0.30), (0.10, 0.15))
 """Length [m] and mass [kg] of each link."""
