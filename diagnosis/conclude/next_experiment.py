@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from diagnosis.conclude.answer import TIED_NATS
+from diagnosis.effects.library import effect
 from diagnosis.motions.shapes import MOTIONS, Motion
 from diagnosis.plant.plant import Plant
 from diagnosis.replay.replay import replay
@@ -15,7 +16,7 @@ from diagnosis.search.result import SearchResult
 from diagnosis.traces.trace import Trace
 from diagnosis.traces.usage import Usage
 from diagnosis.traces.windows import Run
-from diagnosis.verdict import NextExperiment
+from diagnosis.verdict import NextExperiment, PlacedEffect
 
 TICK_S = 0.01
 """Control tick of the proposed motion [s]."""
@@ -53,9 +54,16 @@ def next_experiment(
     stiffer = _difference(plant, rivals, _trace(plant, usage, best, trace))
     if stiffer > 2 * apart:
         words, apart = f"{best.words}; {STIFFER}", stiffer
-    names = [" and ".join(placed.key for placed in model) for model in rivals]
-    why = f"there {names[0]} and {names[1]} differ by {1e3 * apart:.2g} mrad rms"
+    names = [" with ".join(map(_words, model)) for model in rivals]
+    size = f"{float(f'{1e3 * apart:.2g}'):g}"  # two digits, without an exponent
+    why = f"there {names[0]} and {names[1]} differ by {size} mrad rms"
     return NextExperiment(words, place, why)
+
+
+def _words(placed: PlacedEffect) -> str:
+    """An effect with its place: "dry friction at elbow"."""
+    words = effect(placed.name).words
+    return f"{words.label} at {placed.place}" if words.place_kind else words.label
 
 
 def _rivals(found: SearchResult) -> tuple[Model, Model] | None:
