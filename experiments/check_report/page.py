@@ -22,10 +22,9 @@ from experiments.runs.folder import RunFolder
 MEANING = (
     "Each size is the smallest at which a diagnosis of these recordings would name the "
     "effect, if the model were right otherwise but for the usual small mismatch of "
-    "masses, gains and friction; at twice the size it nearly always does, at half of "
-    "it hardly ever. Where more is wrong with the model, sizes are larger. A value "
-    "after < is one below which a limit or a stiffness must be. A dash: no possible "
-    "size is told."
+    "masses, gains and friction. They are computed, not tried, and a factor of two is "
+    "a lot. Where more is wrong with the model, sizes are larger. A value after < is "
+    "one below which a limit or a stiffness must be. A dash: no possible size is told."
 )
 
 

@@ -43,7 +43,7 @@ def recording_rows(found: Check) -> list[tuple[str, ...]]:
                 one.name,
                 f"{one.duration_s:.3g} s",
                 f"{one.rate_hz:.3g}",
-                f"{1e3 * one.jitter_s:.2g} ms",
+                f"{round(1e3 * one.jitter_s, 3):.2g} ms",
                 gaps,
                 f"{moving} of {len(one.joints)}",
             )
