@@ -1,13 +1,11 @@
 """`groundwalk diagnose`: find the physics that recordings show and the sim lacks."""
 
-import io
-import json
 import shutil
 import sys
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated
 
 import numpy as np
 import tyro
@@ -25,7 +23,6 @@ from diagnosis import (
     read_reference,
     read_traces,
 )
-from diagnosis.search.hooks import Saved
 from diagnosis.seen import Seen
 from diagnosis.traces.time_line import time_line
 from diagnosis.traces.trace import DriveBy
@@ -37,6 +34,7 @@ from experiments.diagnosis_report.overlay import write_overlay
 from experiments.diagnosis_report.page import ReportFacts, write_report
 from experiments.diagnosis_report.text import badge
 from experiments.reports.origin import command_of, shown
+from experiments.runs.checkpoint_files import CheckpointFiles
 from experiments.runs.extras import extra
 from experiments.runs.folder import (
     CONFIG,
@@ -51,7 +49,6 @@ from experiments.runs.progress import Stages
 from experiments.runs.robot_model import model_note, robot_model
 from experiments.runs.servo_options import servo_gains
 from groundwalk.errors import BadRecordingError, BadValueError, GroundwalkError
-from groundwalk.files import write_bytes
 from worlds import ServoGains
 
 VERB = "diagnose"
@@ -274,43 +271,6 @@ def _facts(config: Diagnose, folder: RunFolder, found: Diagnosis) -> ReportFacts
         files=files,
         changed=bool(config.reference),
     )
-
-
-PLAIN = "plain"
-"""Name of the array, in an npz file, that holds the JSON part of a result as bytes."""
-
-
-class CheckpointFiles:
-    """A folder of intermediate results, one npz file for each; pickle is never used."""
-
-    def __init__(self, folder: Path) -> None:
-        """Use a folder that holds nothing else; the first `save` makes it."""
-        self._folder = folder
-
-    def load(self, key: str) -> Saved | None:
-        """The result that was saved under a key; None if there is none."""
-        path = self._folder / f"{key}.npz"
-        if not path.is_file():
-            return None
-        with np.load(path, allow_pickle=False) as stored:
-            arrays = dict(stored)
-        return Saved(json.loads(arrays.pop(PLAIN).tobytes()), arrays)
-
-    def save(self, key: str, saved: Saved) -> None:
-        """Write a result under a key; after an error no partial file remains."""
-        text = np.frombuffer(json.dumps(saved.plain).encode(), np.uint8)
-        arrays: dict[str, Any] = {PLAIN: text, **saved.arrays}
-        content = io.BytesIO()
-        np.savez(content, **arrays)
-        write_bytes(self._folder / f"{key}.npz", content.getvalue())
-
-    def exists(self) -> bool:
-        """Whether the folder exists, that is, whether a run was interrupted."""
-        return self._folder.exists()
-
-    def delete(self) -> None:
-        """Delete the folder, which a complete run does not need."""
-        shutil.rmtree(self._folder, ignore_errors=True)
 
 
 if __name__ == "__main__":

@@ -9,9 +9,10 @@ import pytest
 from made_once import made_once
 
 from diagnosis.verdict import Verdict
-from experiments.diagnose import STAGES, CheckpointFiles, Diagnose, main
+from experiments.diagnose import STAGES, Diagnose, main
 from experiments.record import Record
 from experiments.record import main as record
+from experiments.runs.checkpoint_files import CheckpointFiles
 from groundwalk.errors import (
     BadRecordingError,
     BadValueError,

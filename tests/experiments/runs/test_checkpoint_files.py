@@ -1,7 +1,7 @@
 import numpy as np
 
 from diagnosis.search.hooks import Saved
-from experiments.diagnose import CheckpointFiles
+from experiments.runs.checkpoint_files import CheckpointFiles
 
 
 def test_what_is_saved_is_loaded_to_the_last_digit(tmp_path):
