@@ -17,6 +17,7 @@ from diagnosis.material import Material
 from diagnosis.plant.plant import Plant
 from diagnosis.residuals.channels import Channels, channel_unit
 from diagnosis.residuals.data_sets import affordable
+from diagnosis.residuals.predictor import Predictor
 from diagnosis.residuals.torques.torque_predictor import predictor_of
 from diagnosis.traces.outliers import without_outliers
 from diagnosis.traces.reference import Reference
@@ -74,12 +75,12 @@ def check(
             raise
         return Check(audited, {}, (), (), (), None)
     plant, channels, audited = material.plant, material.channels, material.audited
-    now = _sizes(plant, material.traces, channels, threads)
+    now, off = _sizes(plant, material.traces, channels, threads)
     sizes = tuple(_size(plant, one) for one in _in_order(plant, now.smallest))
     clean = [without_outliers(trace)[0] for trace in traces]
     alike = _alike(plant, now.smallest, lacking(plant, clean, audited), audited.moving)
     found = Check(
-        audited, _noise(plant, channels), sizes, alike, (), now.demand.gain,
+        audited, _noise(plant, channels), sizes, alike, (), now.demand.gain, off,
         material.limits,
     )  # fmt: skip
     why = _no_next(plant, material.traces)
@@ -94,15 +95,30 @@ def check(
 
 def _sizes(
     plant: Plant, traces: Sequence[Trace], channels: Channels, threads: int
-) -> Sizes:
-    """How large effects must be to be told, from the part that would be fitted."""
+) -> tuple[Sizes, dict[str, float]]:
+    """How large effects must be to be told, from the part that would be fitted.
+
+    And by how many times the noise the nominal sim is off there, by channel.
+    """
     fit = affordable(plant, split(traces)).fit
     some = thinned(plant, shortened(fit, SIMULATED_S, LEAST_S), len(channels.names))
     lasted_s = [sum(one.duration_s for one in every) for every in (fit, some)]
     predictor = predictor_of(plant, some, channels, threads=threads)
     weight = lasted_s[0] / max(lasted_s[1], 1e-9)
     evidence = evidence_of(predictor, tries_of(predictor), max(weight, 1.0))
-    return evidence.sizes(sum(trace.ticks for trace in fit))
+    off = _off(predictor_of(plant, some, channels, threads=threads))
+    return evidence.sizes(sum(trace.ticks for trace in fit)), off
+
+
+def _off(predictor: Predictor) -> dict[str, float]:
+    """By how many times the noise the nominal sim is off in each channel."""
+    predictor.correct()  # what is wrong with the simulation itself is not the model's
+    (left,) = predictor.residuals([()])
+    return {
+        name: float(np.sqrt(np.mean(left[own] ** 2)))
+        for column, name in enumerate(predictor.channels.names)
+        if (own := predictor.scored & (predictor.channel == column)).any()
+    }
 
 
 def _in_order(plant: Plant, found: dict[str, Smallest]) -> list[Smallest]:

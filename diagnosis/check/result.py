@@ -1,7 +1,7 @@
 """The result of a check of recordings, as data and as JSON."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from diagnosis.audit.result import Audit
 from diagnosis.effects.parts import PlacedEffect
@@ -84,6 +84,7 @@ class Check:
       alike: effects that cannot be told apart.
       proposed: motions to record next, the most useful first.
       gain: what an effect must gain to be reported [nats]; None if not usable.
+      off: by channel, the rms error of the sim as it is, in multiples of the noise.
       limits: sentences on what was left out of the recordings, and on what was not
         computed.
     """
@@ -94,6 +95,7 @@ class Check:
     alike: tuple[Alike, ...]
     proposed: tuple[Proposed, ...]
     gain: float | None
+    off: Mapping[str, float] = field(default_factory=dict)
     limits: tuple[str, ...] = ()
 
     @property
@@ -111,6 +113,7 @@ class Check:
             "usable": self.usable,
             "gain": self.gain,
             "noise": {name: vars(amount) for name, amount in self.noise.items()},
+            "off": dict(self.off),
             "sizes": [to_plain(one) for one in self.sizes],
             "alike": [to_plain(one) for one in self.alike],
             "next": [

@@ -27,7 +27,7 @@ CAREFUL = (
 RECORDINGS = (
     "recording", "length", "rows a second", "jitter", "gaps", "joints that move",
 )  # fmt: skip
-NOISE = ("channel", "noise")
+NOISE = ("channel", "noise", "the sim is off by (times the noise)")
 
 
 def recording_rows(found: Check) -> list[tuple[str, ...]]:
@@ -51,9 +51,13 @@ def recording_rows(found: Check) -> list[tuple[str, ...]]:
     return rows
 
 
-def noise_rows(found: Check) -> list[tuple[str, str]]:
-    """Rows of the table `NOISE`: the noise floor of each channel."""
-    return [(name, _fine(amount)) for name, amount in found.noise.items()]
+def noise_rows(found: Check) -> list[tuple[str, str, str]]:
+    """Rows of the table `NOISE`: noise floor and error of the sim by channel."""
+    off = {name: f"{float(f'{value:.2g}'):g}" for name, value in found.off.items()}
+    return [
+        (name, _fine(amount), off.get(name, "-"))
+        for name, amount in found.noise.items()
+    ]
 
 
 def _fine(amount: Amount) -> str:

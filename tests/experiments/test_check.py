@@ -47,6 +47,19 @@ def test_sizes_lie_between_noise_and_what_the_servo_can_do(found):
     assert found.noise["position.swing"].value == pytest.approx(6e-4, rel=0.5)
 
 
+def test_how_far_the_sim_is_off(recordings, found, tmp_path, capsys):
+    assert found.off["position.swing"] == pytest.approx(1.0, abs=0.2)
+    hidden = ("coulomb_friction@swing:torque=0.3",)
+    rough = Record(
+        tmp_path / "rough.parquet", robot="pendulum", duration=4.0, hidden=hidden
+    )
+    record(rough)
+    off = check_recordings(CheckRecordings((rough.out,))).off
+    assert off["position.swing"] > 10
+    main(checked(recordings, "multisine"))
+    assert "the sim is off by" in capsys.readouterr().out
+
+
 def test_more_recordings_tell_smaller_effects(recordings, found):
     both = check_recordings(checked(recordings, "multisine", "ramps"))
     key = "joint_spring@swing"
