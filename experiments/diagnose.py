@@ -1,31 +1,22 @@
 """`groundwalk diagnose`: find the physics that recordings show and the sim lacks."""
 
 import shutil
-import sys
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
-from pathlib import Path
-from typing import Annotated
+from dataclasses import dataclass
 
 import numpy as np
-import tyro
 
 import robots
 from diagnosis import (
     Diagnosis,
     Hooks,
-    Plant,
-    Reference,
     Rules,
     Trace,
     Verdict,
     diagnose,
-    read_reference,
-    read_traces,
 )
 from diagnosis.seen import Seen
 from diagnosis.traces.time_line import time_line
-from diagnosis.traces.trace import DriveBy
 from experiments.command_line import run_verb
 from experiments.diagnosis_report.console import print_verdict
 from experiments.diagnosis_report.corrected_files import FILES, write_correction
@@ -44,12 +35,15 @@ from experiments.runs.folder import (
     open_run,
     to_plain,
 )
-from experiments.runs.options import RunOptions, check_at_least
+from experiments.runs.options import RunOptions
 from experiments.runs.progress import Stages
-from experiments.runs.robot_model import model_note, robot_model
-from experiments.runs.servo_options import servo_gains
+from experiments.runs.recording_options import (
+    Read,
+    RecordingOptions,
+    read_all,
+    with_model,
+)
 from groundwalk.errors import BadRecordingError, BadValueError, GroundwalkError
-from worlds import ServoGains
 
 VERB = "diagnose"
 _NO_SETTINGS = ("recordings", "out", "resume", "json")
@@ -61,65 +55,29 @@ STAGES = "stages"
 
 
 @dataclass(frozen=True)
-class Diagnose(RunOptions):
+class Diagnose(RecordingOptions, RunOptions):
     """Find out what physics a sim lacks, from recordings of the robot.
 
     Attributes:
-      recordings: Parquet or CSV files (docs/recordings.md), or folders of them.
-      reference: recordings of the same robot while it was healthy. What they show is
-        taken as given; the question is then what has changed since.
-      reference_robot: model of the robot as it was then, if it has another tool or
-        another model now; in the form of `robot`.
-      robot: name of a robot, a model file (.xml or .urdf), or a robot of
-        example-robot-data; by default the model that the recordings state.
-      servo: type of all servos, supply and position gain, such as sts3215@7.4V,P=16,
-        for recordings that do not state it; `groundwalk list servos` shows the types.
-      kp: stiffness of all servos [N m/rad], for recordings that do not state it.
-      kd: damping of all servos [N m s/rad], for recordings that do not state it.
-      max_torque: torque limit of all servos [N m], for recordings that do not state it;
-        no limit by default.
-      drive: what moves the model's joints where both commands and torques were
-        recorded: its servos, or the measured torques.
       least_share: smallest share of the sim's squared error that an effect must explain
         to be reported, from 0 to below 1.
-      threads: processor threads of the replays.
 
     Example:
       See docs/python.md, "Diagnose your own recording".
     """
 
-    recordings: Annotated[
-        tuple[Path, ...], tyro.conf.Positional, tyro.conf.arg(metavar="RECORDING...")
-    ] = ()
-    robot: str = ""
-    reference: Annotated[tuple[Path, ...], tyro.conf.arg(metavar="RECORDING...")] = ()
-    reference_robot: str = ""
-    servo: str = ""
-    kp: float | None = None
-    kd: float | None = None
-    max_torque: float | None = None
-    drive: DriveBy = "servos"
     least_share: float = Rules.least_share
-    threads: int = 2
 
     def __post_init__(self) -> None:
         """Refuse invalid options before anything is written."""
-        super().__post_init__()
-        if self.resume is None and not self.recordings:
-            raise BadValueError("no recording is given; give one at least")
-        if self.reference_robot and not self.reference:
-            raise BadValueError("reference_robot is given without a reference")
-        _ = self.gains  # wrong values are refused
+        RunOptions.__post_init__(self)
+        RecordingOptions.__post_init__(self)
+        if self.resume is None:
+            self.check_given()
         if not 0 <= self.least_share < 1:
             raise BadValueError(
                 f"least_share is {self.least_share}; it must be at least 0, below 1"
             )
-        check_at_least(self, threads=0)
-
-    @property
-    def gains(self) -> ServoGains | None:
-        """The gains that --servo, or --kp, --kd and --max-torque, give; or None."""
-        return servo_gains(self.kp, self.kd, self.max_torque, self.servo)
 
 
 def main(config: Diagnose) -> None:
@@ -145,8 +103,10 @@ def run_diagnosis(config: Diagnose) -> tuple[RunFolder, Verdict]:
     """
     check_free(config.out)
     # recordings that cannot be read are refused before a folder is made
-    config = with_model(config)
-    read = None if config.resume else read_all(config)
+    read: Read | None = None
+    if config.resume is None:
+        config = with_model(config)
+        read = read_all(config)
     folder, config = open_run(VERB, config)
     checkpoint = CheckpointFiles(folder.path / STAGES)
     if folder.has(VERDICT) and not checkpoint.exists():
@@ -159,32 +119,6 @@ def run_diagnosis(config: Diagnose) -> tuple[RunFolder, Verdict]:
         _write(config, folder, found, read[1], stages.advance)
     checkpoint.delete()
     return folder, found.verdict
-
-
-def with_model(config: Diagnose) -> Diagnose:
-    """The options with the model to use; says if it is another than recordings state.
-
-    A resumed run has its own model.
-    """
-    if config.resume is not None:
-        return config
-    robot = robot_model(config.recordings, config.robot)
-    note = model_note(config.recordings, robot)
-    if note:
-        print(f"note: {note}", file=sys.stderr)
-    return replace(config, robot=robot)
-
-
-Read = tuple[Plant, list[Trace], Reference | None]
-"""The robot model, the recordings, and the reference recordings (healthy robot)."""
-
-
-def read_all(config: Diagnose) -> Read:
-    """Read the robot model, its recordings and the reference recordings."""
-    plant, traces = read_traces(config.recordings, config.robot, config.gains)
-    then = config.reference_robot or config.robot
-    reference = read_reference(config.reference, then, plant, config.gains)
-    return plant, traces, reference
 
 
 def _diagnosed(

@@ -10,7 +10,7 @@ import tyro
 from diagnosis import Hooks, predict, read_traces
 from diagnosis.traces.trace import DriveBy
 from experiments.command_line import run_verb
-from experiments.diagnose import AUDIT, Diagnose
+from experiments.diagnose import AUDIT
 from experiments.prediction.diagnosed import DiagnosisRun
 from experiments.prediction.page import (
     COLUMNS,
@@ -27,6 +27,7 @@ from experiments.runs.extras import extra
 from experiments.runs.folder import RESULT, RunFolder, check_free
 from experiments.runs.options import check_at_least
 from experiments.runs.progress import Stages
+from experiments.runs.recording_options import RecordingOptions
 from groundwalk.errors import BadRecordingError, BadValueError
 
 VERB = "predict"
@@ -80,14 +81,14 @@ class Predict:
                 f"no recording is given; give one at least, after {self.run}"
             )
 
-    def as_in(self, run: DiagnosisRun) -> Diagnose:
+    def as_in(self, run: DiagnosisRun) -> RecordingOptions:
         """The options of the run, with its recordings replaced by the new ones."""
         given = {name: getattr(self, name) for name in _GAINS}
         if set(given.values()) == {None, ""}:
             given = {name: run.options[name] for name in _GAINS if name in run.options}
         drive = self.drive or run.options.get("drive", "servos")
         robot = run.robot(self.robot)
-        return Diagnose(self.recordings, robot, drive=drive, **given)
+        return RecordingOptions(self.recordings, robot, drive=drive, **given)
 
 
 def main(config: Predict) -> None:

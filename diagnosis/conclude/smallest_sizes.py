@@ -19,8 +19,9 @@ must stand out from what all other errors may change only, on all data that are 
 Let q be what is left of one standard deviation of it, squared, beside all errors; then
 q / (1 - q) is left beside all others (Sherman and Morrison 1950), as q = r / (1 + r).
 
-With noise, the lead at this size is above that half of the time; at twice the size it
-is four times as large, which is four standard deviations more.
+With noise, the lead at this size is above that half of the time. A lead of L nats has a
+standard deviation of sqrt(2 L): at twice the size L is 40 instead of 10 nats, three
+standard deviations above what is demanded.
 """
 
 from collections.abc import Mapping, Sequence

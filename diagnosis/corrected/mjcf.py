@@ -1,6 +1,5 @@
 """Writes `corrected.xml`: a robot's MJCF with the effects that MuJoCo can simulate."""
 
-import ctypes
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
@@ -18,6 +17,7 @@ from diagnosis.replay.servos import BatchFriction, BatchServos
 from diagnosis.residuals.predictor import Model
 from diagnosis.residuals.replays import variants_of
 from groundwalk.arrays import BoolArray, FloatArray
+from robots.engine_models.mjcf import mujoco_library
 
 CORRECTED_XML = "corrected.xml"
 _LINEAR, _CUBIC = 1, 2
@@ -229,8 +229,7 @@ def _delay_readings(
 @contextmanager
 def _all_digits() -> Iterator[None]:
     """Let MuJoCo write XML with 17 digits in this block; it writes six by default."""
-    folder = Path(mujoco.__file__).parent
-    library = ctypes.CDLL(str(next(folder.glob("*mujoco.*"))))
+    library = mujoco_library()
     before = library._mjPRIVATE__get_xml_precision()
     library._mjPRIVATE__set_xml_precision(_DIGITS)
     try:

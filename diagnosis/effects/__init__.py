@@ -5,8 +5,8 @@ is a class here, one line in `library`, and a second implementation for test wor
 `worlds.hidden.effects`. An effect of your own only needs `also_known`.
 """
 
+from diagnosis.effects.base_kinds import TorqueEffect as TorqueEffect
 from diagnosis.effects.effect import Effect as Effect
-from diagnosis.effects.effect import TorqueEffect as TorqueEffect
 from diagnosis.effects.library import all_effects as all_effects
 from diagnosis.effects.library import also_known as also_known
 from diagnosis.effects.library import effect as effect

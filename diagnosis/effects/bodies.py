@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import mujoco
 import numpy as np
 
-from diagnosis.effects.effect import BodyEffect, NumberEffect
+from diagnosis.effects.base_kinds import BodyEffect, NumberEffect
 from diagnosis.effects.parts import EARLIEST_S, LONGEST_S, EffectWords, Parameter
 from diagnosis.effects.scales import mass_kg, weight_n
 from diagnosis.effects.variants import Push, Variants

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from diagnosis.effects.effect import JointEffect, NumberEffect
+from diagnosis.effects.base_kinds import JointEffect, NumberEffect
 from diagnosis.effects.parts import EffectWords, JointMotion, Parameter, Values
 from diagnosis.effects.places import driven_joints
 from diagnosis.effects.scales import brisk_rad_s, torque_nm, weak_friction_nm

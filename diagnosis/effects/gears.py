@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from diagnosis.effects.effect import JointEffect, ServoEffect
+from diagnosis.effects.base_kinds import JointEffect, ServoEffect
 from diagnosis.effects.parts import (
     EffectWords,
     JointMotion,

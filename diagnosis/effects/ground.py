@@ -6,7 +6,8 @@ from typing import Any
 import mujoco
 import numpy as np
 
-from diagnosis.effects.effect import Effect, NumberEffect
+from diagnosis.effects.base_kinds import NumberEffect
+from diagnosis.effects.effect import Effect
 from diagnosis.effects.parts import EffectWords, Parameter
 from diagnosis.effects.scales import mass_kg, weight_n
 from diagnosis.effects.variants import Variants

@@ -5,11 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from diagnosis.effects.effect import (
-    JointEffect,
-    NumberEffect,
-    TorqueEffect,
-)
+from diagnosis.effects.base_kinds import JointEffect, NumberEffect, TorqueEffect
 from diagnosis.effects.parts import EffectWords, JointMotion, Parameter, Values
 from diagnosis.effects.scales import inertia_kg_m2, range_rad, torque_nm
 from diagnosis.effects.variants import Variants

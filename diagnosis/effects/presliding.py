@@ -1,6 +1,6 @@
 """Friction that acts as springs before it slides."""
 
-from diagnosis.effects.effect import JointEffect
+from diagnosis.effects.base_kinds import JointEffect
 from diagnosis.effects.parts import EffectWords, Parameter, Values
 from diagnosis.effects.scales import torque_nm
 from diagnosis.effects.variants import Variants

@@ -2,10 +2,9 @@
 
 from collections.abc import Sequence
 
-import mujoco
 import numpy as np
 
-from diagnosis.effects.effect import TorqueEffect
+from diagnosis.effects.base_kinds import TorqueEffect
 from diagnosis.effects.parts import EffectWords, Parameter, Values
 from diagnosis.effects.scales import torque_nm
 from diagnosis.effects.variants import Variants
@@ -50,10 +49,8 @@ class Cogging(TorqueEffect):
 
     def places(self, plant: Plant, traces: Sequence[Trace]) -> tuple[str, ...]:
         """Names of all joints that turn."""
-        hinge = mujoco.mjtJoint.mjJNT_HINGE
-        kinds = {name: plant.model.jnt_type[plant.model.joint(name).id] for name in
-                 super().places(plant, traces)}  # fmt: skip
-        return tuple(name for name, kind in kinds.items() if kind == hinge)
+        every = super().places(plant, traces)
+        return tuple(name for name in every if name not in plant.slides)
 
     def parameters(self, plant: Plant, place: str) -> tuple[Parameter, ...]:
         """Torque A [N m], waves n in a turn, and phase [rad] at the angle 0.

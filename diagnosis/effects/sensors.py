@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from diagnosis.effects.effect import JointEffect, NumberEffect
+from diagnosis.effects.base_kinds import JointEffect, NumberEffect
 from diagnosis.effects.parts import EffectWords, Parameter
 from diagnosis.plant.plant import Plant
 from diagnosis.traces.trace import Trace, asked

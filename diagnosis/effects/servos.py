@@ -5,12 +5,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from diagnosis.effects.effect import (
-    LIMITS,
-    JointEffect,
-    NumberEffect,
-    ServoEffect,
-)
+from diagnosis.effects.base_kinds import JointEffect, NumberEffect, ServoEffect
+from diagnosis.effects.effect import LIMITS
 from diagnosis.effects.parts import (
     EARLIEST_S,
     LONGEST_S,

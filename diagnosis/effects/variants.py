@@ -10,7 +10,7 @@ from diagnosis.plant.plant import Plant
 from groundwalk.arrays import FloatArray
 
 if TYPE_CHECKING:
-    from diagnosis.effects.effect import TorqueEffect
+    from diagnosis.effects.base_kinds import TorqueEffect
 
 
 @dataclass(frozen=True)

@@ -26,8 +26,8 @@ from robots import names as robot_names
 from robots.engine_models.mjcf import quiet_mujoco
 from robots.from_urdf.mesh_files import example_robots
 from worlds.recordings.recording import nearest
+from worlds.recordings.stated_model import MODEL_FILES
 
-_SUFFIXES = (".xml", ".urdf")
 _HELD_AT_M = 1.0
 """Height [m] at which the base of a robot from `robots` is placed in the model."""
 
@@ -110,7 +110,7 @@ def _read(
     source: str | Path, base: Base
 ) -> tuple[str, mujoco.MjSpec, Description | None]:
     text = str(source)
-    if Path(text).suffix in _SUFFIXES:
+    if Path(text).suffix in MODEL_FILES:
         path = Path(text)
         if not path.is_file():
             raise BadModelError(f"{path}: no such file")

@@ -19,9 +19,9 @@ from diagnosis.residuals.predictor import Model
 from diagnosis.verdict import Found, PlacedEffect
 from experiments.runs.folder import CONFIG, RunFolder
 from groundwalk.errors import BadRecordingError, BadValueError
+from worlds.recordings.stated_model import MODEL_FILES
 
 VERB = "diagnose"
-MODEL_FILES = (".xml", ".urdf")
 
 SAME = 1e-9
 """Largest difference, as a share, of numbers that were written twice."""

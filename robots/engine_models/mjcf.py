@@ -44,8 +44,14 @@ def quiet_mujoco() -> None:
     log.set()
     # `mujoco.set_mjcb_time(None)` leaves the clock that the package has set itself
     with contextlib.suppress(ValueError):  # not found: slower, and nothing else
-        library = ctypes.CDLL(mujoco._functions.__file__)
-        ctypes.c_void_p.in_dll(library, "mjcb_time").value = None
+        ctypes.c_void_p.in_dll(mujoco_library(), "mjcb_time").value = None
+
+
+def mujoco_library() -> ctypes.CDLL:
+    """MuJoCo's C library, for what its Python package has no name for."""
+    import mujoco
+
+    return ctypes.CDLL(mujoco._functions.__file__)
 
 
 def mujoco_spec(description: Description) -> "mujoco.MjSpec":

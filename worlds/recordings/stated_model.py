@@ -4,7 +4,8 @@ from pathlib import Path
 
 from worlds.recordings.recording import Recording
 
-_MODEL_FILES = (".xml", ".urdf")
+MODEL_FILES = (".xml", ".urdf")
+"""Endings of the files of robot models."""
 
 
 def stated_model(path: Path, recording: Recording) -> str:
@@ -19,5 +20,5 @@ def stated_model(path: Path, recording: Recording) -> str:
     """
     stated = recording.metadata.robot
     beside = path.parent / stated
-    is_file = beside.suffix.lower() in _MODEL_FILES and beside.is_file()
+    is_file = beside.suffix.lower() in MODEL_FILES and beside.is_file()
     return str(beside) if is_file else stated

@@ -19,7 +19,7 @@ from joint_rigs import (
     trace_of,
 )
 
-from diagnosis.effects.effect import TorqueEffect
+from diagnosis.effects.base_kinds import TorqueEffect
 from diagnosis.effects.library import also_known
 from diagnosis.effects.parts import Parameter, PlacedEffect
 from diagnosis.replay.inverse import PER_BLOCK, NeededTorques
