@@ -6,8 +6,9 @@ import matplotlib.image
 import mujoco
 import numpy as np
 import pytest
+from kinds_of_steps import Run, below
 from own_things import arm_mjcf, arm_urdf, wedge_stl, write_csv
-from steps import DIAGNOSED, Run, below
+from small import DIAGNOSED
 from travel import ROOT, take
 
 pytestmark = pytest.mark.slow

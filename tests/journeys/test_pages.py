@@ -2,9 +2,10 @@
 
 import pytest
 from foreign_things import write_foreign_things
+from kinds_of_steps import NotRun, Run
 from made_up_urdf import two_legged
 from own_arm import write_own_arm
-from steps import JOURNEYS, PYTHON_AFTERWARDS, NotRun, Run
+from steps import JOURNEYS, PYTHON_AFTERWARDS
 from travel import ROOT, take
 from typed_pages import PAGES, blocks, typed
 

@@ -7,8 +7,8 @@ import sys
 from pathlib import Path
 
 from copied_processes import groundwalk
+from kinds_of_steps import NotRun, Run
 from opened import open_all
-from steps import NotRun, Run
 
 ROOT = Path(__file__).resolve().parents[2]
 PROGRAMS = {"python": [sys.executable], "make": ["make", "-C", str(ROOT)]}
