@@ -11,12 +11,12 @@ from diagnosis.conclude.soft_friction import CREEPS, creeps, rubs, softly
 from diagnosis.material import Material
 from diagnosis.plant.plant import Plant
 from diagnosis.residuals.channels import MORE_THAN_NOISE, Channels
-from diagnosis.residuals.clock_at import clock_at
 from diagnosis.residuals.data_sets import DataSets
 from diagnosis.residuals.predictor import Model, Predictor
 from diagnosis.residuals.reference_noise import ReferenceNoise
 from diagnosis.residuals.small_mismatch.usual_errors import is_usual
 from diagnosis.residuals.steps import precise
+from diagnosis.residuals.timing.clock_at import clock_at
 from diagnosis.residuals.trust import Trust, trust_of
 from diagnosis.search.changes import established_changes, learn_torques
 from diagnosis.search.few_or_many import found_by

@@ -9,8 +9,8 @@ from diagnosis.baselines.found import NORMAL_80, found_effect, verdict_of
 from diagnosis.baselines.replays import exact_replays
 from diagnosis.plant.plant import Plant
 from diagnosis.residuals.predictor import Model, Predictor
-from diagnosis.residuals.ripples import usage_of
 from diagnosis.residuals.signatures import signatures
+from diagnosis.residuals.torques.ripples import usage_of
 from diagnosis.search.fitting import FittedModel, fit_all
 from diagnosis.search.screening import Screen
 from diagnosis.traces.reference import Reference

@@ -14,8 +14,8 @@ from diagnosis.effects.library import all_effects
 from diagnosis.effects.parts import PlacedEffect
 from diagnosis.plant.plant import Plant
 from diagnosis.residuals.predictor import Model, Predictor
-from diagnosis.residuals.ripples import usage_of
 from diagnosis.residuals.signatures import signatures
+from diagnosis.residuals.torques.ripples import usage_of
 from diagnosis.search.fitting import FittedModel, fit_all
 from diagnosis.search.screening import Screen
 from diagnosis.traces.reference import Reference

@@ -10,12 +10,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from diagnosis.residuals.clock import ClockNoise
-from diagnosis.residuals.command_timing import CommandTiming
 from diagnosis.residuals.reference_noise import Block, ReferenceNoise
 from diagnosis.residuals.replays import Model
 from diagnosis.residuals.small_mismatch.nuisance import Nuisance
 from diagnosis.residuals.start_state import StartUncertainty
+from diagnosis.residuals.timing.clock import ClockNoise
+from diagnosis.residuals.timing.command_timing import CommandTiming
 from diagnosis.residuals.tolerance import Tolerance
 from groundwalk.arrays import FloatArray
 

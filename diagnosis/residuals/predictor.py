@@ -9,8 +9,6 @@ from diagnosis.effects.library import effect
 from diagnosis.effects.servos import late_commands
 from diagnosis.plant.plant import Plant
 from diagnosis.residuals.channels import Channels, measured_of, shared_channels
-from diagnosis.residuals.clock import clock_noise
-from diagnosis.residuals.command_timing import CommandTiming, jumps_of
 from diagnosis.residuals.doubted import Doubted
 from diagnosis.residuals.doubts import Doubts
 from diagnosis.residuals.integration_error import IntegrationError
@@ -19,6 +17,8 @@ from diagnosis.residuals.reference_noise import ReferenceNoise, blocks_of
 from diagnosis.residuals.replays import Model as Model
 from diagnosis.residuals.replays import Replays, time_blocks
 from diagnosis.residuals.start_state import StartUncertainty
+from diagnosis.residuals.timing.clock import clock_noise
+from diagnosis.residuals.timing.command_timing import CommandTiming, jumps_of
 from diagnosis.residuals.trust import Trust
 from diagnosis.traces.trace import Trace
 from groundwalk.arrays import FloatArray

@@ -14,8 +14,8 @@ from diagnosis.effects.library import all_effects
 from diagnosis.effects.parts import PlacedEffect
 from diagnosis.plant.plant import Plant
 from diagnosis.residuals.channels import Channels
-from diagnosis.residuals.clock_at import clock_at
 from diagnosis.residuals.predictor import STEPS_S, Model, Predictor
+from diagnosis.residuals.timing.clock_at import clock_at
 from diagnosis.residuals.torques.torque_predictor import predictor_of
 from diagnosis.traces.split import shortened, thinned
 from diagnosis.traces.trace import Trace

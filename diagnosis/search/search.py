@@ -13,8 +13,8 @@ from diagnosis.effects.library import all_effects, effect
 from diagnosis.residuals.bursts import push_intervals
 from diagnosis.residuals.channels import MORE_THAN_NOISE
 from diagnosis.residuals.predictor import Model, Predictor
-from diagnosis.residuals.ripples import usage_of
 from diagnosis.residuals.signatures import Signature, signatures
+from diagnosis.residuals.torques.ripples import usage_of
 from diagnosis.search.candidates import Candidates, grown, moved
 from diagnosis.search.judging import Judge, distinct, gain_of_noise
 from diagnosis.search.result import MOST_LEFT, Judged, SearchResult, keys_of

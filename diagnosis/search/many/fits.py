@@ -6,7 +6,7 @@ import numpy as np
 
 from diagnosis.residuals.coordinates import Coordinates
 from diagnosis.residuals.predictor import Model
-from diagnosis.residuals.ripples import usage_of
+from diagnosis.residuals.torques.ripples import usage_of
 from diagnosis.residuals.trust import trust_of
 from diagnosis.search.fitting import FittedModel, fit_all
 from diagnosis.search.judging import Judge

@@ -5,7 +5,7 @@ import pytest
 from made_up_traces import arm, trace_of
 
 from diagnosis.residuals.channels import Channels
-from diagnosis.residuals.clock import ClockNoise, clock_noise, speeds
+from diagnosis.residuals.timing.clock import ClockNoise, clock_noise, speeds
 
 ROWS, C = 4000, 5
 TIME_S = np.arange(ROWS) / 100

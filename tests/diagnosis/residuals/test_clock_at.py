@@ -11,8 +11,8 @@ from diagnosis import learned
 from diagnosis.effects.parts import PlacedEffect
 from diagnosis.learned import Learned
 from diagnosis.residuals.channels import Channels
-from diagnosis.residuals.clock_at import clock_at
 from diagnosis.residuals.predictor import Predictor
+from diagnosis.residuals.timing.clock_at import clock_at
 
 NOISE_RAD, JITTER_S = 4e-4, 2e-4
 STOP = ("end_stop", "elbow", 0.3, 1.0)

@@ -8,9 +8,9 @@ from made_up_traces import NOISE_RAD, arm, recorded
 
 from diagnosis.effects.parts import PlacedEffect
 from diagnosis.residuals.channels import Channels
-from diagnosis.residuals.clock import ClockNoise
-from diagnosis.residuals.command_timing import CommandTiming, jumps_of
 from diagnosis.residuals.predictor import Predictor
+from diagnosis.residuals.timing.clock import ClockNoise
+from diagnosis.residuals.timing.command_timing import CommandTiming, jumps_of
 
 NAMES = ("position.shoulder", "position.elbow")
 LATE_S = 2e-3

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from diagnosis.residuals.channels import Channels
-from diagnosis.residuals.jitter import with_clock, with_shared_clock
+from diagnosis.residuals.timing.jitter import with_clock, with_shared_clock
 
 ROWS, C = 4000, 5
 TIME_S = np.arange(ROWS) / 100

@@ -6,9 +6,9 @@ from joint_rigs import ARM, arm_law, integrated, plant_of, ticks, trace_of
 from made_up_traces import arm, arm_command, recorded
 
 from diagnosis.effects.parts import PlacedEffect
-from diagnosis.residuals.clock import ClockNoise
 from diagnosis.residuals.predictor import Channels, Predictor
 from diagnosis.residuals.start_state import StartUncertainty
+from diagnosis.residuals.timing.clock import ClockNoise
 from diagnosis.traces.windows import Run
 
 NOISE_RAD = 4e-4

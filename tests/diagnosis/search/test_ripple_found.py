@@ -12,7 +12,7 @@ from diagnosis.effects.library import effect
 from diagnosis.effects.parts import PlacedEffect
 from diagnosis.effects.variants import Variants
 from diagnosis.pipeline import diagnose
-from diagnosis.residuals.ripples import ripples, usage_of
+from diagnosis.residuals.torques.ripples import ripples, usage_of
 from diagnosis.traces.motion import Motion
 
 SIZES = [(0.05, 30, 1.0), (0.2, 60, -2.0), (0.4, 12, 3.0)]

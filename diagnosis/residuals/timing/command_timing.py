@@ -14,7 +14,7 @@ import numpy as np
 
 from diagnosis.residuals.changes import Changes
 from diagnosis.residuals.channels import Channels
-from diagnosis.residuals.clock import ClockNoise
+from diagnosis.residuals.timing.clock import ClockNoise
 from diagnosis.residuals.tolerance import Tolerance, without_each
 from diagnosis.traces.trace import Trace
 from groundwalk.arrays import FloatArray, IntArray

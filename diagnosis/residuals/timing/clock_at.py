@@ -7,9 +7,9 @@ measured again at the best model that was found (`../learned.py`).
 import numpy as np
 
 from diagnosis.residuals.channels import MORE_THAN_NOISE, Channels
-from diagnosis.residuals.clock import clock_noise, speeds
-from diagnosis.residuals.jitter import with_clock, with_shared_clock
 from diagnosis.residuals.predictor import Model, Predictor
+from diagnosis.residuals.timing.clock import clock_noise, speeds
+from diagnosis.residuals.timing.jitter import with_clock, with_shared_clock
 
 
 def clock_at(

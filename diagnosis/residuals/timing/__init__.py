@@ -1,0 +1,1 @@
+"""Errors of clocks, and of the times at which commands act."""
