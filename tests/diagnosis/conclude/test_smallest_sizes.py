@@ -143,8 +143,10 @@ def test_usual_errors_are_not_told():
 
 @pytest.mark.parametrize("known", [0.5, 10.0, 300.0])
 def test_dry_friction_stands_out_from_other_errors_only(known):
-    """Of one standard deviation r = `known` is left beside all others, and whitened
-    with its own r / (1 + r). On all data it gains 1.5 r / 2 for each deviation squared.
+    """Dry friction of one standard deviation leaves r = `known` beside all others.
+
+    Whitened with its own as well it is r / (1 + r). On all data it gains 1.5 r / 2 for
+    each deviation squared.
     """
     spread = effect("coulomb_friction").spread(PLANT, "elbow")
     rub = PlacedEffect("coulomb_friction", "elbow", (5 * spread,))

@@ -105,7 +105,7 @@ def test_servos_with_damping_inside_of_their_limit(name):
 
 
 def test_late_encoders_of_elastic_joints_see_motors(nao):
-    """Of other joints they are MuJoCo's sensors: another cubic between the steps."""
+    """Other joints are read by MuJoCo's sensors: another cubic between the steps."""
     late = ("sensor_delay", "encoders", 0.0133)
     with_laws, native = compared(nao, model_of(*SPRING, late), commanded(nao), 1e-3)
     assert with_laws < 2e-5

@@ -18,6 +18,7 @@ RPM = 2 * math.pi / 60
     ],
 )
 def test_stall_and_no_load_are_about_those_of_the_maker(text, stall_nm, no_load_rad_s):
+    # what benches measured differs from what makers state by up to a quarter
     servo = servo_of(text)
     assert servo.max_torque_nm == pytest.approx(stall_nm, rel=0.15)
     speed_rad_s = servo.max_torque_nm / servo.back_emf_nm_s_rad
