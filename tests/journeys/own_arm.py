@@ -38,7 +38,7 @@ def arm_urdf():
 
 
 def write_own_arm(folder):
-    """`my_arm.urdf`, three logs in the folder `logs`, and `tuesday.csv`."""
+    """`my_arm.urdf`, two logs in the folder `logs`, and `tuesday.csv`."""
     (folder / "my_arm.urdf").write_text(arm_urdf())
     (folder / "logs").mkdir()
     for seed, (name, motion) in enumerate(MOTIONS.items()):
@@ -55,15 +55,11 @@ def _chirp(t, k):
     return 0.2 * np.sin(2 * np.pi * (0.3 * t + (0.1 + 0.02 * k) * t**2))
 
 
-def _steps(t, k):
-    return 0.12 * np.sign(np.sin(2 * np.pi * t / (1.7 + 0.3 * k)))
-
-
 def _waves(t, k):
     return 0.3 * np.sin((2.1 + 0.5 * k) * t) + 0.1 * np.sin((5.3 - k) * t)
 
 
-MOTIONS = {"ramps": _ramps, "chirp": _chirp, "steps": _steps, "tuesday": _waves}
+MOTIONS = {"ramps": _ramps, "chirp": _chirp, "tuesday": _waves}
 
 
 def _moved(motion, rng):
