@@ -19,7 +19,7 @@ from groundwalk.errors import (
     ForeignFileError,
     nearest_name,
 )
-from worlds import Recording, RecordingMetadata, ServoGains
+from worlds import Load, Recording, RecordingMetadata, ServoGains
 from worlds.foreign import (
     BagOptions,
     ForeignRecording,
@@ -77,6 +77,8 @@ class Convert:
       kp: stiffness of all servos [N m/rad].
       kd: damping of all servos [N m s/rad].
       max_torque: torque limit of all servos [N m].
+      load: a known mass [kg] that a body carried, and where in the body's frame it is
+        fixed [m], such as lever=1.02@0,0,-0.15.
       source: where the recording comes from; by default what the file tells.
       map: what the columns of a table are, such as position.elbow=q2*deg or time=t*ms;
         `none` in place of a column leaves one out.
@@ -106,6 +108,7 @@ class Convert:
     kp: float | None = None
     kd: float | None = None
     max_torque: float | None = None
+    load: Words = ()
     source: str = ""
     map: Words = ()
     yes: bool = False
@@ -136,7 +139,7 @@ class Convert:
                     f"{option.replace('_', '-')} is given, but no source is a "
                     f"{' or '.join(meant_for)}"
                 )
-        _ = self.gains, self.new_names  # they refuse wrong values
+        _ = self.gains, self.new_names, self.loads  # they refuse wrong values
 
     @property
     def every_source(self) -> list[Path]:
@@ -152,6 +155,11 @@ class Convert:
     def gains(self) -> ServoGains | None:
         """The gains of all servos; None if they are not given."""
         return servo_gains(self.kp, self.kd, self.max_torque, self.servo)
+
+    @property
+    def loads(self) -> dict[str, Load]:
+        """The known loads by the body's name."""
+        return dict(map(_load, _flat(self.load)))
 
     @property
     def new_names(self) -> dict[str, str]:
@@ -243,12 +251,13 @@ def _show(table: ForeignTable, entries: Sequence[Entry]) -> None:
 def _recording(config: Convert, found: ForeignRecording) -> Recording:
     gains = config.gains
     if config.robot:
-        _check_joints(config, found)
+        _check_names(config, found)
     metadata = RecordingMetadata(
         robot=_robot(config) or found.robot or _NO_ROBOT,
         base=config.base,
         source=config.source or f"groundwalk convert: {found.source}",
         servo=dict.fromkeys(found.joints, gains) if gains is not None else {},
+        loads=config.loads,
     )
     try:
         return found.recording(metadata)
@@ -264,10 +273,13 @@ def _robot(config: Convert) -> str:
     return os.path.relpath(config.robot, folder)
 
 
-def _check_joints(config: Convert, found: ForeignRecording) -> None:
+def _check_names(config: Convert, found: ForeignRecording) -> None:
     from diagnosis.plant.load import load_plant
+    from diagnosis.plant.loads import check_loads
 
-    known = load_plant(config.robot, config.base).joints
+    plant = load_plant(config.robot, config.base)
+    check_loads(config.loads, plant, found.name)
+    known = plant.joints
     for joint in found.joints:
         if joint not in known:
             close = nearest_name(joint, known) or known[0]
@@ -291,6 +303,25 @@ def _paths(config: Convert, found: Sequence[ForeignRecording]) -> list[Path]:
     if twice:
         raise BadValueError(f"two recordings would be called {twice[0]}")
     return [config.out / f"{name}.{config.format}" for name in names]
+
+
+def _load(text: str) -> tuple[str, Load]:
+    """A load and the name of its body, from a text like lever=1.02@0,0,-0.15."""
+    body, _, said = text.partition("=")
+    mass, _, place = said.partition("@")
+    try:
+        x, y, z = map(float, place.split(","))
+        kg = float(mass)
+    except ValueError:
+        body = ""
+    if not body:
+        raise BadValueError(
+            f"load is {text!r}; it must be BODY=KG@X,Y,Z, like lever=1.02@0,0,-0.15"
+        )
+    try:
+        return body, Load(kg, (x, y, z))
+    except BadRecordingError as error:
+        raise BadValueError(f"load is {text!r}: {error}") from None
 
 
 def _flat(words: Iterable[Iterable[str]]) -> tuple[str, ...]:

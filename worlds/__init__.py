@@ -15,6 +15,7 @@ Example:
 from worlds.catalog import WORLDS, kind, make
 from worlds.observation import Observation, Truth
 from worlds.recordings.files import read_recording, write_recording
+from worlds.recordings.load import Load
 from worlds.recordings.metadata import RecordingMetadata, ServoGains
 from worlds.recordings.recording import Recording
 from worlds.sensor_noise import SensorNoise
@@ -25,6 +26,7 @@ __all__ = [
     "TICK_S",
     "WORLDS",
     "End",
+    "Load",
     "Observation",
     "Recording",
     "RecordingMetadata",

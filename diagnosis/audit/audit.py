@@ -55,6 +55,7 @@ def _audit_trace(trace: Trace, plant: Plant) -> tuple[TraceAudit, list[Finding]]
     for channel in channels.values():
         findings += measures.channel_findings(trace, channel)
     findings += [
+        *measures.load_findings(trace),
         *measures.repeated_findings(trace, repeated),
         *measures.stuck_findings(trace, plant.joints, channels),
         *suspicions.range_findings(trace, plant),

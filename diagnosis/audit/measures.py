@@ -119,6 +119,17 @@ def repeated_findings(trace: Trace, share: float) -> Iterator[Finding]:
         yield Finding("limit", text, trace.name)
 
 
+def load_findings(trace: Trace) -> Iterator[Finding]:
+    """Notes on the loads that the robot carried, as the recording states."""
+    for body, load in trace.loads.items():
+        place = ", ".join(f"{axis:g}" for axis in load.at)
+        text = (
+            f"{trace.name}: {body} carries {load.mass:g} kg at ({place}) m, as the "
+            "recording states"
+        )
+        yield Finding("note", text, trace.name)
+
+
 def _clipped_share(name: str, values: FloatArray, step: float) -> float:
     """Share of rows in which a channel stays at an extreme value, reached at speed.
 

@@ -1,10 +1,14 @@
-"""Typical torques, speeds and masses of a robot, for bounds of effects' parameters."""
+"""Typical torques, speeds and masses of a robot, for bounds of effects' parameters.
 
-from typing import Any
+Where recordings state known loads, the robot with the heaviest one counts.
+"""
+
+from collections.abc import Iterator
 
 import mujoco
 import numpy as np
 
+from diagnosis.plant.loads import model_under
 from diagnosis.plant.plant import Plant
 from groundwalk.gravity import GRAVITY_M_S2
 
@@ -50,11 +54,12 @@ def weak_friction_nm(plant: Plant, joint: str) -> float:
 
 def inertia_kg_m2(plant: Plant, joint: str) -> float:
     """A joint's entry in the mass matrix's diagonal, in the reference pose."""
-    model, data = plant.model, _reference(plant)
-    mass_matrix = np.zeros((model.nv, model.nv))
-    mujoco.mj_fullM(model, data, mass_matrix)
-    dof = plant.dofs[plant.joints.index(joint)]
-    return float(mass_matrix[dof, dof])
+    dof, found = plant.dofs[plant.joints.index(joint)], []
+    for model, data in _at_rest(plant):
+        mass_matrix = np.zeros((model.nv, model.nv))
+        mujoco.mj_fullM(model, data, mass_matrix)
+        found.append(float(mass_matrix[dof, dof]))
+    return max(found)
 
 
 def speed_rad_s(plant: Plant, joint: str) -> float:
@@ -85,7 +90,8 @@ def range_rad(plant: Plant, joint: str) -> tuple[float, float]:
 
 def mass_kg(plant: Plant) -> float:
     """Mass of the whole robot model."""
-    return float(plant.model.body_mass.sum())
+    carried = (sum(one.mass for one in loads.values()) for loads in plant.loads)
+    return float(plant.model.body_mass.sum()) + max(carried, default=0.0)
 
 
 def weight_n(plant: Plant) -> float:
@@ -98,7 +104,11 @@ def _gravity_torque_nm(plant: Plant, joint: str) -> float:
 
     The robot is in its reference pose. For a sliding joint, the weight [N] it carries.
     """
-    model, data = plant.model, _reference(plant)
+    return max(_gravity_on(model, data, joint) for model, data in _at_rest(plant))
+
+
+def _gravity_on(model: mujoco.MjModel, data: mujoco.MjData, joint: str) -> float:
+    """The same of one model, in the pose that `data` holds."""
     number = model.joint(joint).id
     body = int(model.jnt_bodyid[number])
     weight = GRAVITY_M_S2 * float(model.body_subtreemass[body])
@@ -109,8 +119,10 @@ def _gravity_torque_nm(plant: Plant, joint: str) -> float:
     return weight * float(np.linalg.norm(arm - axis * (axis @ arm)))
 
 
-def _reference(plant: Plant) -> Any:
-    """`MjData` of the robot model at rest in its reference pose."""
-    data = mujoco.MjData(plant.model)
-    mujoco.mj_forward(plant.model, data)
-    return data
+def _at_rest(plant: Plant) -> Iterator[tuple[mujoco.MjModel, mujoco.MjData]]:
+    """The robot model at rest in its reference pose: bare, and with each known load."""
+    for loads in ({}, *plant.loads):
+        model = model_under(plant, loads)
+        data = mujoco.MjData(model)
+        mujoco.mj_forward(model, data)
+        yield model, data

@@ -1,7 +1,7 @@
 """The plant: the nominal robot model that a diagnosis simulates."""
 
 import copy
-from collections.abc import Collection
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Literal
@@ -11,6 +11,7 @@ import numpy as np
 
 from diagnosis.plant.servo import Servo
 from groundwalk.arrays import FloatArray
+from worlds.recordings.load import Load
 
 Base = Literal["fixed", "floating"]
 """How a robot's base is held: welded to the world, or free to move."""
@@ -48,6 +49,7 @@ class Plant:
       used_nm: (j,) largest torques measured at the joints; None if not compared.
       creeps: whether dry friction is as soft as the model's own solver parameters make
         it, so that joints creep; otherwise it stops a joint within a step.
+      loads: known loads that the robot carries in recordings, see `bearing`.
 
     Example:
       >>> load_plant("nao", base="floating").joints
@@ -62,6 +64,7 @@ class Plant:
     options: ModelOptions | None = None
     used_nm: FloatArray | None = None
     creeps: bool = False
+    loads: tuple[Mapping[str, Load], ...] = ()
 
     def without_ranges(self, joints: Collection[str]) -> "Plant":
         """A copy of the robot model in which these joints have no end stops."""
@@ -71,6 +74,20 @@ class Plant:
         for name in joints:
             spec.joint(name).limited = mujoco.mjtLimited.mjLIMITED_FALSE.value
         return replace(self, spec=spec)
+
+    def bearing(self, loads: Sequence[Mapping[str, Load]]) -> "Plant":
+        """The robot model for recordings with these loads, by the body's name.
+
+        MuJoCo's compiler makes some bodies simple: their mass matrix has no room for
+        what a load beside the centre of mass adds. So they must not be simple.
+        """
+        carried = [one for one in loads if one]
+        if not carried:
+            return self
+        spec = self.spec.copy()
+        for name in set().union(*carried):
+            spec.body(name).simple = False
+        return replace(self, spec=spec, loads=tuple(carried))
 
     @cached_property
     def model(self) -> mujoco.MjModel:

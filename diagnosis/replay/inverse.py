@@ -18,6 +18,7 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 
 from diagnosis.effects.variants import Variants
+from diagnosis.plant.loads import model_under
 from diagnosis.plant.plant import Plant, inverse_dynamics
 from diagnosis.replay.presliding import torque_along
 from diagnosis.replay.servos import dry_friction_nm
@@ -54,6 +55,7 @@ class NeededTorques:
         motions = [trace.motion for trace in traces if trace.motion is not None]
         assert len(motions) == len(traces)
         self._plant = plant
+        self._loads = [trace.loads for trace in traces]
         self._whole_s = [trace.time_s for trace in traces]
         steps = [max(1, motion.block_rows // PER_BLOCK) for motion in motions]
         rows = [
@@ -132,10 +134,24 @@ class NeededTorques:
         key = (*own, *(v.tobytes() for v in changed.values()))
         if key not in self._kept:
             model = model_with(self._plant, changed)
-            self._kept[key] = inverse_dynamics(self._plant, model, *moved)
+            self._kept[key] = self._inverse(model, moved)
             if len(self._kept) > MOST_KEPT:
                 self._kept.popitem(last=False)
         return self._kept[key]
+
+    def _inverse(self, model: mujoco.MjModel, moved: "_Moved") -> FloatArray:
+        """(rows, j) torques that bodies need, with the loads of each trace."""
+        if not any(self._loads):
+            return inverse_dynamics(self._plant, model, *moved)
+        parts = [
+            inverse_dynamics(
+                self._plant,
+                model_under(self._plant, own, model),
+                *(one[rows] for one in moved),
+            )
+            for rows, own in zip(self._parts, self._loads, strict=True)
+        ]
+        return np.concatenate(parts)
 
     def _passive(self, variants: Variants, row: int, moved: "_Moved") -> FloatArray:
         """(rows, j) torques against changed damping, rotor inertias and springs."""

@@ -1,11 +1,13 @@
 """Applies servos and all effects that MuJoCo lacks to a batch of simulations."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
 
 from diagnosis.effects.variants import Variants
+from diagnosis.plant.loads import Inertias, carry
+from diagnosis.plant.plant import Plant
 from diagnosis.plant.servo import Servo
 from diagnosis.replay.outside import OutsideForces
 from diagnosis.replay.presliding import BatchPresliding
@@ -18,6 +20,7 @@ from diagnosis.replay.servos import (
 )
 from diagnosis.replay.transmission import BatchGaps, ElasticJoints
 from groundwalk.arrays import FloatArray
+from worlds.recordings.load import Load
 
 FAST = 1e9
 """Speed [rad/s] that stands for no speed limit of a set-point."""
@@ -33,12 +36,17 @@ class BatchLaws:
     """
 
     def __init__(
-        self, batch: Any, variants: Variants, servos: Sequence[Servo], step_s: float
+        self,
+        batch: Any,
+        variants: Variants,
+        servos: Sequence[Servo],
+        step_s: float,
+        loads: Sequence[Mapping[str, Load]] = (),
     ) -> None:
         """Set the constants of all simulations; call `begin` once they have states.
 
         The `batch` has n R simulations of n variants with the servos of R runs, sorted
-        by variant.
+        by variant, and with the `loads` of R runs, if there are any.
         """
         plant, runs = variants.plant, len(servos)
         self._batch, self._step_s = batch, step_s
@@ -51,6 +59,7 @@ class BatchLaws:
         }
         for name, values in variants.fields.items():
             self._expand(name)[:] = np.repeat(values, runs, axis=0)
+        self._carry(plant, loads)
         self._rotor_kg_m2 = self._rotors()
         self._batch.set_const()
         self._servos = BatchServos(batch, plant, servos, joints, step_s)
@@ -231,6 +240,14 @@ class BatchLaws:
             mean += share * (self._setpoint + change / 2)
             self._setpoint = self._setpoint + change
         return mean
+
+    def _carry(self, plant: Plant, loads: Sequence[Mapping[str, Load]]) -> None:
+        """Add the loads of R runs to the bodies of their simulations."""
+        if any(loads):
+            inertias = [self._expand(name) for name in Inertias._fields]
+            for run, own in enumerate(loads):
+                part = (one[run :: len(loads)] for one in inertias)
+                carry(Inertias(*part), plant, own)
 
     def _rotors(self) -> FloatArray:
         """Rotor inertias (n R, j); moves those of elastic joints out of the links.

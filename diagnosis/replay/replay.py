@@ -99,7 +99,8 @@ class ReplayBatch:
         np.asarray(self._batch.expand("opt.timestep"))[:] = step_s
         self.qpos, self.qvel = map(self.bind, ("qpos", "qvel"))
         servos = [_servo(run.trace) for run in runs]
-        self.laws = BatchLaws(self._batch, variants, servos, step_s)
+        loads = [run.trace.loads for run in runs]
+        self.laws = BatchLaws(self._batch, variants, servos, step_s, loads)
         self._start(runs, variants)
         self.laws.begin(before_rad=[run.before_rad for run in runs])
 

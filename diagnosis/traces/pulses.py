@@ -12,6 +12,7 @@ from dataclasses import replace
 import numpy as np
 from scipy.ndimage import median_filter, minimum_filter1d
 
+from diagnosis.plant.loads import model_under
 from diagnosis.plant.plant import Plant, inverse_dynamics
 from diagnosis.traces.smoothing import smooth_columns
 from diagnosis.traces.trace import Trace, filled, stretches
@@ -259,7 +260,9 @@ def _felt(
     """
     assert trace.torque_nm is not None
     motion = smooth_columns(trace.time_s, trace.position_rad)
-    needed = inverse_dynamics(plant, plant.model, *motion)[:, column]
+    needed = inverse_dynamics(plant, model_under(plant, trace.loads), *motion)[
+        :, column
+    ]
     velocity = motion.rate[:, column]
     pulse = np.zeros(trace.ticks)
     for (first, last), size in zip(where, sizes, strict=True):

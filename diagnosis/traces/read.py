@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from diagnosis.plant.load import load_plant
+from diagnosis.plant.loads import check_loads
 from diagnosis.plant.plant import Base, Plant
 from diagnosis.plant.servo import Gains, with_gains
 from diagnosis.traces.reference import Reference
@@ -49,6 +50,9 @@ def read_traces(
     first = recordings[0]
     base: Base = "floating" if first.metadata.base == "floating" else "fixed"
     plant = load_plant(source, base, first.joints, gains[0])
+    for path, one in zip(files, recordings, strict=True):
+        check_loads(one.metadata.loads, plant, str(path))
+    plant = plant.bearing([one.metadata.loads for one in recordings])
     traces = [
         replace(
             trace_of(recording, plant, name),
@@ -153,6 +157,7 @@ def trace_of(recording: Recording, plant: Plant, name: str) -> Trace:
         time_s=recording.time_s,
         position_rad=recording.joint_values("position", plant.joints),
         servo=with_gains(plant.servo, plant.joints, recording.metadata.servo),
+        loads=recording.metadata.loads,
         **channels,
     )
 

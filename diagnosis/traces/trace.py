@@ -1,7 +1,7 @@
 """A recording as arrays in the joint order of the robot model it is compared with."""
 
-from collections.abc import Sequence
-from dataclasses import dataclass, fields, replace
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, fields, replace
 from typing import Any, Literal
 
 import numpy as np
@@ -11,6 +11,7 @@ from diagnosis.plant.servo import Servo
 from diagnosis.traces.motion import Motion
 from groundwalk.arrays import BoolArray, FloatArray
 from groundwalk.errors import BadRecordingError
+from worlds.recordings.load import Load
 
 DriveBy = Literal["servos", "torques"]
 """What drives the joints in a replay of a recording: simulated servos that follow the
@@ -57,6 +58,8 @@ class Trace:
       before: of a part, rows of the recording just before it, which are not compared:
         they tell the state in which the part begins, and what was commanded before.
       servo: the servos of this recording; gains may differ between recordings.
+      loads: known masses that the robot carried in this recording, beyond those of its
+        model, by the body's name.
       position_rad, velocity_rad_s, torque_nm: (T, j) measured at the joints.
       command_rad, command_torque_nm: (T, j) position and torque targets.
       added_nm: (T, j) torques that act on the joints in addition to the servos'.
@@ -92,6 +95,7 @@ class Trace:
     base_linear_velocity_m_s: FloatArray | None = None
     base_angular_velocity_rad_s: FloatArray | None = None
     motion: Motion | None = None
+    loads: Mapping[str, Load] = field(default_factory=dict)
     part_of: str = ""
     before: "Trace | None" = None
     every: int = 1
@@ -179,7 +183,7 @@ class Trace:
 
     def _columns(self) -> dict[str, FloatArray]:
         """The arrays with a row for each time, by the names of their fields."""
-        every = {field.name: getattr(self, field.name) for field in fields(self)}
+        every = {one.name: getattr(self, one.name) for one in fields(self)}
         return {n: each for n, each in every.items() if isinstance(each, np.ndarray)}
 
 

@@ -9,7 +9,7 @@ from foreign_files import joint_state, states, write_bag, write_lerobot
 
 from experiments.convert import Convert, convert, main
 from groundwalk.errors import ForeignFileError, GroundwalkError
-from worlds import read_recording
+from worlds import Load, read_recording
 
 LOG = "t_ms,q_swing_deg,cmd_swing_deg,heat\n" + "".join(
     f"{10 * k},{k},{2 * k},30\n" for k in range(5)
@@ -153,3 +153,31 @@ def test_times_that_go_back_are_refused_with_the_name_of_the_file(log, tmp_path)
     (tmp_path / "log.csv").write_text(LOG.replace("20,", "5,", 1))
     with pytest.raises(GroundwalkError, match=r"log: column 'time', row 2"):
         convert(Convert((log,), Path("new"), yes=True))
+
+
+def test_a_known_load_is_kept(log):
+    loads = (("rod=1.5@0,0.1,-0.2",),)
+    options = {"robot": "arm.urdf", "yes": True, "load": loads}
+    convert(Convert((log,), out=Path("loaded.parquet"), **options))
+    metadata = read_recording(Path("loaded.parquet")).metadata
+    assert metadata.loads == {"rod": Load(1.5, (0.0, 0.1, -0.2))}
+    wrong = {**options, "load": (("road=1.5@0,0,0",),)}
+    with pytest.raises(GroundwalkError, match=r"fixed to 'road'.*did you mean 'rod'"):
+        convert(Convert((log,), out=Path("wrong.parquet"), **wrong))
+
+
+@pytest.mark.parametrize(
+    ("text", "problem"),
+    [
+        ("rod", "must be BODY=KG@X,Y,Z"),
+        ("rod=1.5", "must be BODY=KG@X,Y,Z"),
+        ("rod=heavy@0,0,0", "must be BODY=KG@X,Y,Z"),
+        ("=1.5@0,0,0", "must be BODY=KG@X,Y,Z"),
+        ("rod=1.5@0,0", "must be BODY=KG@X,Y,Z"),
+        ("rod=-1@0,0,0", "must be a number above 0, not -1.0"),
+        ("rod=1@nan,0,0", "must be three numbers"),
+    ],
+)
+def test_a_load_has_a_body_a_mass_and_a_place(log, text, problem):
+    with pytest.raises(GroundwalkError, match=problem):
+        Convert((log,), out=Path("loaded.parquet"), load=((text,),))

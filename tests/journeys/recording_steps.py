@@ -162,7 +162,8 @@ RECORDING_STEPS: dict[str, dict[str, Step]] = {
         "--without gripper --out arm_recordings": Run(
             writes=("arm_recordings/*.parquet",), says="joints shoulder_pan; "
         ),
-        "groundwalk convert lift.json --rename pendulum=elbow --out lift.parquet": Run(
+        "groundwalk convert lift.json --rename pendulum=elbow "
+        "--load lever=0.5@0,0,-0.1 --out lift.parquet": Run(
             writes=("lift.parquet",), says="joints elbow"
         ),
         "groundwalk convert chirp.npz --joints LF_HAA LF_HFE LF_KFE "

@@ -1,4 +1,4 @@
-"""Metadata of a recording: its robot, base and source, and servo gains if known."""
+"""Metadata of a recording: robot, base and source, and known servo gains and loads."""
 
 import json
 import sys
@@ -9,6 +9,7 @@ from typing import cast
 
 from groundwalk.errors import BadRecordingError, BadValueError
 from groundwalk.json_data import from_plain, parse_object, to_plain
+from worlds.recordings.load import Load
 
 FORMAT = 1
 _BASES = ("fixed", "floating")
@@ -88,6 +89,8 @@ class RecordingMetadata:
     """Free text: the person, robot or program that made the recording."""
     servo: Mapping[str, ServoGains] = field(default_factory=dict)
     """Servo gains by joint name; joints whose gains are unknown are left out."""
+    loads: Mapping[str, Load] = field(default_factory=dict)
+    """Loads that the robot carried beyond what its model has, by the body's name."""
     terrain: Mapping[str, object] | None = None
     """The terrain under the robot: its `name`, `parameters` and `seed`."""
     gait: Mapping[str, object] | None = None
@@ -109,8 +112,9 @@ class RecordingMetadata:
             raise BadRecordingError(
                 f"metadata 'base' must be 'fixed' or 'floating', not {self.base!r}"
             )
-        _check_servo(self.servo)
-        object.__setattr__(self, "servo", dict(self.servo))
+        for key, kind, name in (("servo", ServoGains, "gains"), ("loads", Load, "one")):
+            _check_each(key, getattr(self, key), kind, name)
+            object.__setattr__(self, key, dict(getattr(self, key)))
         for key in ("terrain", "gait"):
             value = getattr(self, key)
             if value is not None:
@@ -127,6 +131,7 @@ class RecordingMetadata:
             }
             for joint, gains in plain["servo"].items()
         } or None
+        plain["loads"] = plain["loads"] or None
         known = {key: part for key, part in plain.items() if part is not None}
         return json.dumps({"format": FORMAT, **known}, sort_keys=True)
 
@@ -150,10 +155,10 @@ def _as_object(what: str, value: object) -> dict[str, object]:
     return dict(value)
 
 
-def _check_servo(servo: Mapping[str, ServoGains]) -> None:
-    for joint, gains in _as_object("metadata 'servo'", servo).items():
-        if not isinstance(gains, ServoGains):
-            raise BadRecordingError(f"servo of {joint!r} must be gains, not {gains!r}")
+def _check_each(key: str, given: Mapping[str, object], kind: type, name: str) -> None:
+    for place, one in _as_object(f"metadata {key!r}", given).items():
+        if not isinstance(one, kind):
+            raise BadRecordingError(f"{key} of {place!r} must be {name}, not {one!r}")
 
 
 def _json_object(key: str, value: object) -> dict[str, object]:

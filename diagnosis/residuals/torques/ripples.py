@@ -11,6 +11,7 @@ from dataclasses import replace
 import numpy as np
 
 from diagnosis.effects.ripple import MOST_PER_TURN
+from diagnosis.plant.loads import model_under
 from diagnosis.plant.plant import Plant, inverse_dynamics
 from diagnosis.replay.asked import centred
 from diagnosis.residuals.predictor import Predictor
@@ -69,7 +70,9 @@ def _moved(
     else:
         q, v = motion.position_rad, motion.velocity_rad_s
         a = motion.acceleration_rad_s2
-    needed = inverse_dynamics(plant, plant.model, *map(np.nan_to_num, (q, v, a)))
+    needed = inverse_dynamics(
+        plant, model_under(plant, trace.loads), *map(np.nan_to_num, (q, v, a))
+    )
     given = np.full_like(needed, np.nan)
     if motion is None and trace.command_rad is not None:
         given = trace.servo.torque(centred(trace) - q, v)

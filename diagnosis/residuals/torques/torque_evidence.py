@@ -12,6 +12,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from diagnosis.plant.loads import model_under
 from diagnosis.plant.plant import Plant, inverse_dynamics
 from diagnosis.residuals.channels import LEAST_TORQUE
 from diagnosis.residuals.predictor import Predictor
@@ -208,7 +209,9 @@ def _regressed(plant: Plant, trace: Trace, found: Smoothed) -> FloatArray:
     assert trace.torque_nm is not None
     left = np.full_like(trace.torque_nm, np.nan)
     inside = np.isfinite(trace.position_rad).all(axis=1)
-    needed = inverse_dynamics(plant, plant.model, *map(np.nan_to_num, found))
+    needed = inverse_dynamics(
+        plant, model_under(plant, trace.loads), *map(np.nan_to_num, found)
+    )
     for j, measured in enumerate(trace.torque_nm.T):
         known, v = inside & np.isfinite(measured), found.rate[:, j]
         if known.any():
@@ -237,7 +240,9 @@ def _motion(plant: Plant, trace: Trace, highest_hz: float, block_s: float) -> Mo
     position, velocity, acceleration = map(np.nan_to_num, found)
     inside = _inside(trace, 1 / highest_hz)
     before, after = (
-        inverse_dynamics(plant, plant.model, *map(np.nan_to_num, one))
+        inverse_dynamics(
+            plant, model_under(plant, trace.loads), *map(np.nan_to_num, one)
+        )
         for one in (found, again)
     )
     wrong = _block_means((after - before)[inside], rows)

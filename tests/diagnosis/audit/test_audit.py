@@ -9,6 +9,7 @@ from audited_arm import HZ, QUANTUM, SECONDS, changed, one, servo, texts
 from diagnosis.audit.audit import audit
 from diagnosis.traces.read import read_traces
 from diagnosis.traces.trace import Trace
+from worlds.recordings.load import Load
 from worlds.recordings.metadata import ServoGains
 
 DATA = Path(__file__).parents[4] / "shared" / "data"
@@ -27,6 +28,13 @@ def test_good_trace_has_no_findings(trace, plant):
     assert channels["position.a"].quantum == pytest.approx(QUANTUM, rel=1e-4)
     assert channels["velocity.b"].noise_std == pytest.approx(0.01, rel=0.15)
     assert channels["velocity.b"].quantum is None
+
+
+def test_a_load_is_noted(trace, plant):
+    loaded = replace(trace, loads={"hand": Load(0.5, (0.0, 0.1, -0.25))})
+    (found,) = audit([loaded], plant).findings
+    assert found.severity == "note"
+    assert "hand carries 0.5 kg at (0, 0.1, -0.25) m" in found.text
 
 
 def test_motion_is_measured(trace, plant):

@@ -3,7 +3,7 @@ import pytest
 
 from diagnosis.traces.read import read_traces
 from groundwalk.errors import BadRecordingError
-from worlds import Recording, RecordingMetadata, write_recording
+from worlds import Load, Recording, RecordingMetadata, write_recording
 from worlds.recordings.metadata import ServoGains
 
 ARM = """
@@ -18,13 +18,13 @@ def write(tmp_path):
     """Function: writes a recording of these joints, gives its path."""
     (tmp_path / "arm.xml").write_text(ARM)
 
-    def write(name, joints=("two", "one"), base="fixed", servo=(), **more):
+    def write(name, joints=("two", "one"), base="fixed", servo=(), loads=(), **more):
         columns = {"time": np.arange(100) * 0.01}
         for k, joint in enumerate(joints):
             columns[f"position.{joint}"] = np.full(100, float(k))
             columns[f"command.{joint}"] = np.full(100, 10.0 + k)
         columns |= more
-        metadata = RecordingMetadata("arm", base, "test", dict(servo))
+        metadata = RecordingMetadata("arm", base, "test", dict(servo), dict(loads))
         path = tmp_path / f"{name}.parquet"
         path.parent.mkdir(exist_ok=True)
         write_recording(Recording(columns, metadata), path)
@@ -45,6 +45,20 @@ def test_columns_come_in_the_plant_s_order(write, tmp_path):
     assert np.isnan(trace.torque_nm[7, 0])
     assert np.isnan(trace.torque_nm[:, 1]).all()
     assert np.isfinite(np.delete(trace.torque_nm[:, 0], 7)).all()
+
+
+def test_each_recording_has_its_own_loads(write, tmp_path):
+    load = Load(2.0, (0.0, 0.0, 0.3))
+    paths = [write("free"), write("loaded", loads={"b": load})]
+    plant, traces = read_traces(paths, tmp_path / "arm.xml")
+    assert [trace.loads for trace in traces] == [{}, {"b": load}]
+    assert plant.loads == ({"b": load},)
+    wrong = write("wrong", loads={"bb": load})
+    with pytest.raises(
+        BadRecordingError,
+        match=r"wrong.parquet: a load is fixed to 'bb', which is no body of .*'b'\?",
+    ):
+        read_traces([wrong], tmp_path / "arm.xml")
 
 
 def test_a_folder_stands_for_its_recordings(write, tmp_path):

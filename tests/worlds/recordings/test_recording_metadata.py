@@ -5,11 +5,13 @@ import numpy as np
 import pytest
 
 from groundwalk.errors import BadRecordingError
+from worlds.recordings.load import Load
 from worlds.recordings.metadata import RecordingMetadata, ServoGains
 
 LEAST = {"format": 1, "robot": "nao", "base": "floating", "source": "a test"}
 FULL = LEAST | {
     "servo": {"knee": {"kp": 20.0, "kd": 1.5, "max_torque": 9.0}},
+    "loads": {"shin": {"mass": 1.5, "at": [0.0, 0.1, -0.2]}},
     "terrain": {"name": "lumps", "parameters": {"amplitude_m": 0.01}, "seed": 2**70},
     "gait": {"step_height_m": 0.02},
     "world": "sim",
@@ -30,13 +32,15 @@ def refusal(document):
 def test_the_least_there_can_be():
     metadata = read(LEAST)
     assert metadata == RecordingMetadata("nao", "floating", "a test")
-    assert metadata.servo == {}
+    assert metadata.servo == {} == metadata.loads
+    assert "loads" not in json.loads(metadata.to_json())
     assert metadata.terrain is None
 
 
 def test_all_there_can_be():
     metadata = read(FULL)
     assert metadata.servo == {"knee": ServoGains(20.0, 1.5, 9.0)}
+    assert metadata.loads == {"shin": Load(1.5, (0.0, 0.1, -0.2))}
     assert metadata.terrain == FULL["terrain"]
     assert metadata.gait == {"step_height_m": 0.02}
     assert (metadata.world, metadata.end) == ("sim", "fall")
@@ -119,7 +123,7 @@ def test_an_unknown_key_is_named_with_the_nearest_one():
     assert message.startswith(
         "metadata has an unknown key 'servos': did you mean 'servo'? known are base,"
     )
-    assert "known are base, end, gait, robot" in refusal(LEAST | {"zzzz": 1})
+    assert "known are base, end, gait, loads, robot" in refusal(LEAST | {"zzzz": 1})
 
 
 @pytest.mark.parametrize("key", ["robot", "base", "source", "world", "end"])
@@ -163,6 +167,34 @@ GAINS = FULL["servo"]["knee"]
 )
 def test_gains_are_checked(servo, problem):
     assert problem in refusal(LEAST | {"servo": servo})
+
+
+@pytest.mark.parametrize(
+    ("loads", "problem"),
+    [
+        (3, "metadata.loads must be an object, not 3"),
+        ({"shin": {"mass": 1}}, "metadata.loads.shin has no 'at'"),
+        ({"shin": {"mass": 0, "at": [0, 0, 0]}}, "must be a number above 0, not 0.0"),
+        ({"shin": {"mass": 1, "at": [0, 0]}}, "loads.shin.at must be a list of 3"),
+        ({"shin": {"mass": 1, "at": 3}}, "metadata.loads.shin.at must be a list"),
+        (
+            {"shin": {"mass": 1, "at": [0, "a", 0]}},
+            "metadata.loads.shin.at[1] must be a finite number",
+        ),
+    ],
+)
+def test_loads_are_checked(loads, problem):
+    assert problem in refusal(LEAST | {"loads": loads})
+
+
+@pytest.mark.parametrize(
+    ("mass", "at"),
+    [(-1.0, (0, 0, 0)), (True, (0, 0, 0)), (1.0, (0, 0)), (1.0, "abc"), (1.0, 3)],
+)
+def test_a_load_is_a_mass_at_a_place(mass, at):
+    assert Load(2, [1, 0, 0]) == Load(2.0, (1.0, 0.0, 0.0))
+    with pytest.raises(BadRecordingError, match="of a load must be"):
+        Load(mass, at)
 
 
 def test_a_gain_of_nothing_is_allowed():
