@@ -6,7 +6,7 @@ import numpy as np
 
 from diagnosis.audit.result import Audit
 from diagnosis.conclude.estimates import estimates
-from diagnosis.effects.library import effect, grown_from
+from diagnosis.effects.library import containing, effect
 from diagnosis.effects.parts import PlacedEffect
 from diagnosis.plant.plant import Plant
 from diagnosis.residuals.predictor import Predictor
@@ -76,7 +76,7 @@ def gap(found: SearchResult, placed: PlacedEffect) -> float:
 
     At least 0, compared with the winner; infinite if no model without it was tried.
     """
-    same = {placed.key, *(grown.key for grown in grown_from(placed))}
+    same = {placed.key, *containing(placed)}
     without = [
         found.worse(other)
         for size, models in found.best.items()

@@ -9,7 +9,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from diagnosis.effects.library import all_effects, effect, grown_from
+from diagnosis.effects.library import all_effects, containing, effect
 from diagnosis.effects.parts import PlacedEffect
 from diagnosis.residuals.predictor import Model, Predictor
 from diagnosis.residuals.ties import groups_of, without_each
@@ -96,7 +96,7 @@ def _by_lot(
 
 def _contains(one: PlacedEffect, other: PlacedEffect) -> bool:
     """Whether an effect is a more general form of another."""
-    return one.key in (grown.key for grown in grown_from(other))
+    return one.key in containing(other)
 
 
 def _best(

@@ -11,6 +11,8 @@ import numpy as np
 from diagnosis.effects.library import effect
 from diagnosis.residuals.bursts import BIN_S, push_intervals
 from diagnosis.residuals.predictor import Model, Predictor
+from diagnosis.residuals.ties import number_of_values
+from diagnosis.search.accept import simpler_models
 from diagnosis.search.chance import in_standard_errors, independent_blocks
 from diagnosis.search.fitting import FittedModel, fit_all
 from diagnosis.search.judging import gain_of_noise
@@ -49,17 +51,22 @@ def simplified(both: Predictor, model: Model) -> Model:
 
     A search compared the forms on a part of the data, and beside other errors.
     """
-    for placed in model:
-        simpler = effect(placed.name).simpler(placed)
-        others = tuple(one for one in model if one is not placed)
-        taken = {one.key for one in others}
-        if simpler.key in {placed.key, *taken} or placed.tied:
-            continue
-        whole, part = fit_all(both, [model, (*others, simpler)])
-        fewer = len(placed.values) - len(simpler.values)
-        if not _pays(both, whole, part, fewer):
-            model = part.model
-    return model
+    while True:
+        starts = [one for one in simpler_models(model) if _untied(model, one)]
+        if not starts:
+            return model
+        whole, *parts = fit_all(both, [model, *starts])
+        part = min(parts, key=lambda fit: fit.energy)
+        fewer = number_of_values(model) - number_of_values(part.model)
+        if _pays(both, whole, part, fewer):
+            return model
+        model = part.model
+
+
+def _untied(model: Model, simpler: Model) -> bool:
+    """Whether no value of what became simpler is shared with other joints."""
+    kept = {one.key for one in simpler}
+    return not any(one.tied for one in model if one.key not in kept)
 
 
 def _pays(both: Predictor, whole: FittedModel, part: FittedModel, more: int) -> bool:

@@ -29,6 +29,7 @@ from diagnosis.effects.ripple import Cogging
 from diagnosis.effects.variants import Variants
 from diagnosis.plant.plant import Plant
 from diagnosis.plant.servo import Servo
+from diagnosis.replay.dry_friction import VARYING
 from diagnosis.replay.servos import servo_laws
 from diagnosis.residuals.predictor import Model
 from diagnosis.residuals.replays import variants_of
@@ -54,6 +55,20 @@ NAMES: Mapping[type[Law], str] = {
 }
 """Names of the constants with the values of each kind of law, in the order in which
 laws act in a step."""
+
+FRICTION: Mapping[str, str] = {
+    "stribeck_nm": "extra_nm",
+    "stribeck_speed_rad_s": "speed_rad_s",
+    "stribeck_exponent": "exponent",
+    **{
+        name: name
+        for name in (
+            *("load_share", "link_share", "extra_load_share", "extra_link_share"),
+            "extra_square_1_nm",
+        )
+    },
+}
+"""Arguments of the law of dry friction, by the attributes of `Joints` they are."""
 
 ON_COMMANDS = (SpeedLimit, Play, ElasticDrive, Saturation)
 """Laws that need a command when it is due, so that its delay must come before them."""
@@ -206,15 +221,8 @@ def _of_joint(
     if own["fade_1_s"] or own["off_share"]:
         names = ("fade_1_s", "off_share", "off_start_s", "off_end_s")
         yield WeakServo, {name: own[name] for name in names}
-    if own["stribeck_nm"] or own["load_share"]:
-        yield (
-            DryFriction,
-            {
-                "extra_nm": own["stribeck_nm"],
-                "speed_rad_s": own["stribeck_speed_rad_s"],
-                "load_share": own["load_share"],
-            },
-        )
+    if any(own[name] for name in VARYING):
+        yield DryFriction, {new: own[name] for name, new in FRICTION.items()}
     if own["slip_nm"]:
         values = {"torque_nm": own["slip_nm"], "reach_rad": own["slip_rad"]}
         yield Presliding, values

@@ -75,6 +75,9 @@ class Effect(ABC):
     components: ClassVar[int] = 1
     """Number of first values that form a vector; its parts are tried one by one."""
 
+    only_grown: ClassVar[bool] = False
+    """Whether the effect is tried only in place of a simpler one, see `grown_from`."""
+
     timed: ClassVar[bool] = False
     """Whether the effect's last two values are start [s] and duration [s]. If so, it is
     tried at the times at which the recordings show a short error."""
@@ -188,8 +191,11 @@ class Effect(ABC):
     def first_tries(self, plant: Plant, place: str, usage: Usage) -> list[Values]:
         """Values to try first; one set is enough where the effect is nearly linear.
 
+        None of an effect that is `only_grown`.
         Start and duration of a timed effect are replaced by those of short errors.
         """
+        if self.only_grown:
+            return []
         typical = tuple(one.typical for one in self.parameters(plant, place))
         size = self.components
         vectors = [
@@ -235,9 +241,9 @@ class Effect(ABC):
         """The effect, started from a simpler one that it contains; () from others."""
         return ()
 
-    def simpler(self, placed: PlacedEffect) -> PlacedEffect:
-        """The simpler effect that `placed` contains, or else `placed` itself."""
-        return placed
+    def simpler(self, placed: PlacedEffect) -> tuple[PlacedEffect, ...]:
+        """Simpler effects that `placed` contains, with start values; () if none."""
+        return ()
 
     def native_part(self, placed: PlacedEffect) -> PlacedEffect | None:
         """What MuJoCo can simulate of the effect, as an effect; None for nothing."""

@@ -8,7 +8,7 @@ from diagnosis.effects.base_kinds import JointEffect, NumberEffect
 from diagnosis.effects.parts import EffectWords, JointMotion, Parameter, Values
 from diagnosis.effects.places import driven_joints
 from diagnosis.effects.scales import brisk_rad_s, torque_nm, weak_friction_nm
-from diagnosis.effects.variants import Variants
+from diagnosis.effects.variants import Joints, Variants
 from diagnosis.plant.plant import Plant
 from diagnosis.traces.trace import Trace
 from diagnosis.traces.usage import Usage
@@ -144,16 +144,11 @@ class StribeckFriction(JointEffect):
         )
 
     def apply(self, copies: Variants, row: int, place: str, values: FloatArray) -> None:
-        """Add the friction to one variant; speeds v_s are averaged by extra torque."""
+        """Add the friction to one variant."""
         coulomb_nm, extra_nm, speed_rad_s = values
         joints, at = copies.joints, (row, copies.column(place))
         joints.coulomb_nm[at] += coulomb_nm
-        if extra_nm > 0:
-            total_nm = joints.stribeck_nm[at] + extra_nm
-            share = extra_nm / total_nm
-            joints.stribeck_speed_rad_s[at] *= 1 - share
-            joints.stribeck_speed_rad_s[at] += share * speed_rad_s
-            joints.stribeck_nm[at] = total_nm
+        add_peak(joints, at, extra_nm, speed_rad_s)
 
     def grown_from(self, other: PlacedEffect) -> tuple[PlacedEffect, ...]:
         """Stribeck friction to try after dry friction: half as much more at rest."""
@@ -170,11 +165,11 @@ class StribeckFriction(JointEffect):
         coulomb, extra, _ = (one.typical for one in self.parameters(plant, place))
         return [(coulomb, extra, speed) for speed in (0.03, 0.2)]
 
-    def simpler(self, placed: PlacedEffect) -> PlacedEffect:
+    def simpler(self, placed: PlacedEffect) -> tuple[PlacedEffect, ...]:
         """Dry friction alone, between the torques at high speed and at rest."""
         coulomb_nm, extra_nm, _ = placed.values
         mean_nm = coulomb_nm + extra_nm / 2
-        return PlacedEffect("coulomb_friction", placed.place, (mean_nm,))
+        return (PlacedEffect("coulomb_friction", placed.place, (mean_nm,)),)
 
     def native_part(self, placed: PlacedEffect) -> PlacedEffect | None:
         """Dry friction that is the same at all speeds; the peak is left out."""
@@ -217,3 +212,23 @@ class LoadFriction(NumberEffect, JointEffect):
     def torque_column(self, motion: JointMotion) -> FloatArray:
         """(rows,) size of the torque by the nominal model, with the velocity's sign."""
         return np.abs(motion.torque_nm) * motion.direction
+
+
+def add_peak(
+    joints: Joints,
+    at: tuple[int, int],
+    extra_nm: float,
+    speed_rad_s: float,
+    exponent: float = 2.0,
+) -> None:
+    """Add a Stribeck peak to one joint of one variant, `at` (row, column) of arrays.
+
+    Speeds and exponents of several peaks are averaged by their torques at rest [N m].
+    """
+    total_nm = joints.stribeck_nm[at] + extra_nm
+    share = extra_nm / total_nm if total_nm > 0 else 1.0
+    joints.stribeck_speed_rad_s[at] *= 1 - share
+    joints.stribeck_speed_rad_s[at] += share * speed_rad_s
+    joints.stribeck_exponent[at] *= 1 - share
+    joints.stribeck_exponent[at] += share * exponent
+    joints.stribeck_nm[at] = total_nm

@@ -8,6 +8,7 @@ from types import MappingProxyType
 from diagnosis.effects import (
     bodies,
     friction,
+    gear_friction,
     gears,
     ground,
     joints,
@@ -30,6 +31,11 @@ BUILT_IN: Mapping[str, Effect] = MappingProxyType(
             friction.StribeckFriction(),
             friction.LoadFriction(),
             presliding.Presliding(),
+            gear_friction.ShapedStribeck(),
+            gear_friction.LoadedGear(),
+            gear_friction.LoadedStribeck(),
+            gear_friction.DirectionalGear(),
+            gear_friction.QuadraticGear(),
             gears.Backlash(),
             gears.JointElasticity(),
             servos.CommandLatency(),
@@ -97,6 +103,16 @@ def grown_from(placed: PlacedEffect) -> tuple[PlacedEffect, ...]:
     return tuple(
         grown for one in all_effects().values() for grown in one.grown_from(placed)
     )
+
+
+def containing(placed: PlacedEffect) -> frozenset[str]:
+    """Keys of all more general effects that contain this one, at once or by steps."""
+    found, left = set[str](), [placed]
+    while left:
+        more = [one for one in grown_from(left.pop()) if one.key not in found]
+        found.update(one.key for one in more)
+        left += more
+    return frozenset(found)
 
 
 def lasts(placed: PlacedEffect, traces: Sequence[Trace]) -> bool:

@@ -74,6 +74,6 @@ class Presliding(JointEffect):
             for reach in GROWN_REACHES_RAD
         )
 
-    def simpler(self, placed: PlacedEffect) -> PlacedEffect:
+    def simpler(self, placed: PlacedEffect) -> tuple[PlacedEffect, ...]:
         """Dry friction that slides at once."""
-        return PlacedEffect("coulomb_friction", placed.place, (placed.values[0],))
+        return (PlacedEffect("coulomb_friction", placed.place, placed.values[:1]),)

@@ -47,7 +47,13 @@ class Joints:
       stribeck_speed_rad_s: speed at which the extra friction has dropped to 37 %.
       slip_nm: dry friction whose springs have all slipped, see `replay.presliding`.
       slip_rad: angle by which the last of its springs bends before it slips.
+      stribeck_exponent: how abruptly it drops there; 2 for a Gaussian.
       load_share: dry friction as a share of the motor's torque, back-EMF included.
+      link_share: the same of the torque that the links put on the joint: see
+        `replay.dry_friction.DryFriction`.
+      extra_load_share, extra_link_share: the same shares, only near standstill.
+      extra_square_1_nm: share of the torque that gears carry, per N m of that torque,
+        that is dry friction near standstill.
       spring_nm_rad: stiffness between motor and joint; infinite for a rigid gear.
       torque_factor: measured torque over the true one, where torques are compared.
     """
@@ -69,7 +75,12 @@ class Joints:
     stribeck_speed_rad_s: FloatArray
     slip_nm: FloatArray
     slip_rad: FloatArray
+    stribeck_exponent: FloatArray
     load_share: FloatArray
+    link_share: FloatArray
+    extra_load_share: FloatArray
+    extra_link_share: FloatArray
+    extra_square_1_nm: FloatArray
     spring_nm_rad: FloatArray
     spring_damping_nm_s_rad: FloatArray
     torque_factor: FloatArray
@@ -83,6 +94,7 @@ class Joints:
             "max_torque_nm": np.inf,
             "setpoint_speed_rad_s": np.inf,
             "stribeck_speed_rad_s": 0.1,
+            "stribeck_exponent": 2.0,
             "spring_nm_rad": np.inf,
             "torque_factor": 1.0,
         }

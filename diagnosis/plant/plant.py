@@ -182,6 +182,37 @@ def inverse_dynamics(
     constraints, such as equalities between joints, are left out: they would turn sensor
     noise into large torques.
     """
+    motion = position_rad, velocity_rad_s, acceleration_rad_s2
+    return _inverse(plant, model, motion, "qfrc_inverse")
+
+
+def links_torque_nm(
+    plant: Plant,
+    model: mujoco.MjModel,
+    position_rad: FloatArray,
+    velocity_rad_s: FloatArray,
+) -> FloatArray:
+    """(R, j) torques [N m] that gravity and the links' speeds put on the joints.
+
+    They act along the joint: a link that hangs to the side pulls itself down. The robot
+    has a fixed base; (R, j) positions and velocities are its motion, `model` is that of
+    `inverse_dynamics`.
+    """
+    motion = position_rad, velocity_rad_s, np.zeros_like(velocity_rad_s)
+    return -_inverse(plant, model, motion, "qfrc_bias")
+
+
+def _inverse(
+    plant: Plant,
+    model: mujoco.MjModel,
+    motion: tuple[FloatArray, FloatArray, FloatArray],
+    result: str,
+) -> FloatArray:
+    """(R, j) values of a field of MuJoCo's data after inverse dynamics of a motion.
+
+    The motion is (R, j) positions, velocities and accelerations of the joints.
+    """
+    position_rad, velocity_rad_s, acceleration_rad_s2 = motion
     model = copy.copy(model)
     model.opt.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_CONSTRAINT)
     data = mujoco.MjData(model)
@@ -190,7 +221,7 @@ def inverse_dynamics(
     qpos[:, plant.qpos] = position_rad
     qvel[:, plant.dofs], qacc[:, plant.dofs] = velocity_rad_s, acceleration_rad_s2
     # views of MuJoCo's own memory: looking them up takes longer than the computation
-    views = data.qpos, data.qvel, data.qacc, data.qfrc_inverse
+    views = data.qpos, data.qvel, data.qacc, getattr(data, result)
     for row in range(len(position_rad)):
         views[0][:], views[1][:], views[2][:] = qpos[row], qvel[row], qacc[row]
         mujoco.mj_inverse(model, data)

@@ -9,7 +9,7 @@ they did.
 
 import copy
 from collections import OrderedDict
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from operator import attrgetter
 from typing import NamedTuple
 
@@ -19,11 +19,12 @@ from scipy.interpolate import CubicSpline
 
 from diagnosis.effects.variants import Variants
 from diagnosis.plant.loads import model_under
-from diagnosis.plant.plant import Plant, inverse_dynamics
+from diagnosis.plant.plant import Plant, inverse_dynamics, links_torque_nm
+from diagnosis.replay.dry_friction import SHARES_OF_LINKS, DryFriction, depends_on
 from diagnosis.replay.presliding import torque_along
-from diagnosis.replay.servos import dry_friction_nm
 from diagnosis.traces.trace import Trace
 from groundwalk.arrays import FloatArray
+from worlds.recordings.load import Load
 
 PASSIVE = "dof_damping", "dof_armature", "jnt_stiffness", "qpos_spring"
 """Fields of MuJoCo's model whose torques are linear in the motion: they are added
@@ -55,7 +56,6 @@ class NeededTorques:
         motions = [trace.motion for trace in traces if trace.motion is not None]
         assert len(motions) == len(traces)
         self._plant = plant
-        self._loads = [trace.loads for trace in traces]
         self._whole_s = [trace.time_s for trace in traces]
         steps = [max(1, motion.block_rows // PER_BLOCK) for motion in motions]
         rows = [
@@ -73,7 +73,13 @@ class NeededTorques:
         self._earlier = [_earlier_rad(trace) for trace in traces]
         ends = np.cumsum([len(own) for own in rows])
         self._parts = [slice(e - len(r), e) for e, r in zip(ends, rows, strict=True)]
-        self._kept: OrderedDict[tuple[bytes, ...], FloatArray] = OrderedDict()
+        loads = [trace.loads for trace in traces]
+        self._by_load: list[tuple[slice, Mapping[str, Load]]] = (
+            list(zip(self._parts, loads, strict=True))
+            if any(loads)
+            else [(slice(None), {})]
+        )
+        self._kept: OrderedDict[tuple[object, ...], FloatArray] = OrderedDict()
         self._jacobians: dict[int, FloatArray] = {}
 
     def of(self, variants: Variants) -> FloatArray:
@@ -107,8 +113,9 @@ class NeededTorques:
         loss = variants.fields.get("dof_frictionloss")
         dry = self._plant.model.dof_frictionloss if loss is None else loss[row]
         dry = dry[self._plant.dofs] + joints["coulomb_nm"]
-        dry = dry + dry_friction_nm(joints, moved.velocity, 0.0)
-        torque = _loaded(torque, dry, joints["load_share"], np.sign(moved.velocity))
+        way, links_nm = np.sign(moved.velocity), self._links(variants, row, moved)
+        rubs = DryFriction(joints, moved.velocity, links_nm)
+        torque = rubs.needed_nm(torque + way * dry, way)
         return self._late(torque * joints["torque_factor"], variants, row)
 
     def _timely(self, late_s: FloatArray) -> "_Moved":
@@ -128,30 +135,38 @@ class NeededTorques:
 
     def _rigid(self, variants: Variants, row: int, moved: "_Moved") -> FloatArray:
         """(rows, j) torques of a variant's bodies, and of all that is nominal."""
+        return self._of_bodies(inverse_dynamics, variants, row, moved)
+
+    def _links(
+        self, variants: Variants, row: int, moved: "_Moved"
+    ) -> FloatArray | float:
+        """(rows, j) torques that a variant's links put on joints; 0.0 if not needed."""
+        joints = {name: one[row] for name, one in vars(variants.joints).items()}
+        if not depends_on(joints, SHARES_OF_LINKS):
+            return 0.0
+        return self._of_bodies(_by_links, variants, row, moved)
+
+    def _of_bodies(
+        self,
+        law: Callable[..., FloatArray],
+        variants: Variants,
+        row: int,
+        moved: "_Moved",
+    ) -> FloatArray:
+        """(rows, j) torques of a law by a variant's bodies and each trace's loads."""
         changed = {k: v[row] for k, v in variants.fields.items() if k not in PASSIVE}
         joints = variants.joints
         own = joints.offset_rad[row].tobytes(), joints.late_s[row].tobytes()
-        key = (*own, *(v.tobytes() for v in changed.values()))
+        key = (law, *own, *(v.tobytes() for v in changed.values()))
         if key not in self._kept:
-            model = model_with(self._plant, changed)
-            self._kept[key] = self._inverse(model, moved)
+            model, each = model_with(self._plant, changed), []
+            for rows, loads in self._by_load:
+                under = model_under(self._plant, loads, model)
+                each.append(law(self._plant, under, *(one[rows] for one in moved)))
+            self._kept[key] = np.concatenate(each)
             if len(self._kept) > MOST_KEPT:
                 self._kept.popitem(last=False)
         return self._kept[key]
-
-    def _inverse(self, model: mujoco.MjModel, moved: "_Moved") -> FloatArray:
-        """(rows, j) torques that bodies need, with the loads of each trace."""
-        if not any(self._loads):
-            return inverse_dynamics(self._plant, model, *moved)
-        parts = [
-            inverse_dynamics(
-                self._plant,
-                model_under(self._plant, own, model),
-                *(one[rows] for one in moved),
-            )
-            for rows, own in zip(self._parts, self._loads, strict=True)
-        ]
-        return np.concatenate(parts)
 
     def _passive(self, variants: Variants, row: int, moved: "_Moved") -> FloatArray:
         """(rows, j) torques against changed damping, rotor inertias and springs."""
@@ -232,6 +247,11 @@ class NeededTorques:
         return torque
 
 
+def _by_links(plant: Plant, model: mujoco.MjModel, *motion: FloatArray) -> FloatArray:
+    """(rows, j) torques that links put on joints; accelerations are left out."""
+    return links_torque_nm(plant, model, *motion[:2])
+
+
 def _earlier_rad(trace: Trace) -> FloatArray | None:
     """(rows, j) smoothed positions just before a part of a recording, if known."""
     before = trace.before
@@ -243,18 +263,6 @@ def _earlier_rad(trace: Trace) -> FloatArray | None:
 def _stacked(parts: Sequence[FloatArray]) -> FloatArray:
     """(rows, j) values of all motions, missing ones as 0."""
     return np.asarray(np.nan_to_num(np.concatenate(parts)))
-
-
-def _loaded(
-    free_nm: FloatArray, dry_nm: FloatArray, share: FloatArray, way: FloatArray
-) -> FloatArray:
-    """(rows, j) torques of motors T = free + way (dry + share |T|), solved for T.
-
-    `free_nm` is the torque without friction, `way` the sign of the speed.
-    """
-    torque = free_nm + way * dry_nm
-    # the motor drives the load, or the load drives the motor
-    return np.asarray(torque / (1 - share * np.sign(torque * way)))
 
 
 def model_with(plant: Plant, fields: dict[str, FloatArray]) -> mujoco.MjModel:

@@ -7,6 +7,12 @@ import numpy as np
 
 from diagnosis.plant.plant import Plant
 from diagnosis.plant.servo import Servo
+from diagnosis.replay.dry_friction import (
+    SHARES_OF_LINKS,
+    VARYING,
+    DryFriction,
+    depends_on,
+)
 from diagnosis.replay.transmission import LEAST_KP, ElasticJoints
 from groundwalk.arrays import FloatArray
 
@@ -276,7 +282,10 @@ class BatchFriction:
         batch, `damping_nm_s_rad` (rows, j) all damping that is integrated implicitly.
         """
         self._joints, self._dofs = joints, columns(plant.dofs)
-        self.varies = bool(joints["stribeck_nm"].any() or joints["load_share"].any())
+        self.varies = depends_on(joints, VARYING)
+        self._bias: FloatArray | None = None
+        if depends_on(joints, SHARES_OF_LINKS):
+            self._bias = np.asarray(batch.bind("qfrc_bias"))
         self._torque_nm = np.asarray(batch.expand("dof_frictionloss"))
         self._torque_nm[:, self._dofs] += joints["coulomb_nm"]
         self._least_nm = self._torque_nm[:, self._dofs].copy()
@@ -290,23 +299,13 @@ class BatchFriction:
         np.asarray(batch.expand("dof_solref"))[:] = solref
 
     def follow(self, velocity_rad_s: FloatArray, driven_nm: FloatArray) -> None:
-        """Set friction by (rows, j) speeds [rad/s] and by torques in gears [N m]."""
-        more = dry_friction_nm(self._joints, velocity_rad_s, driven_nm)
-        self._torque_nm[:, self._dofs] = self._least_nm + more
+        """Set friction by (rows, j) speeds [rad/s] and by motors' torques [N m].
 
-
-def dry_friction_nm(
-    joints: Mapping[str, FloatArray],
-    velocity_rad_s: FloatArray,
-    driven_nm: FloatArray | float,
-) -> FloatArray:
-    """Largest dry friction [N m] beyond Coulomb's, at speeds and torques in gears.
-
-    `joints` are arrays of `Joints` by name; all arrays have shapes that broadcast.
-    """
-    speed = velocity_rad_s / joints["stribeck_speed_rad_s"]
-    more = joints["stribeck_nm"] * np.exp(-(speed**2))
-    return np.asarray(more + joints["load_share"] * np.abs(driven_nm))
+        The links' torques are those of the step before, as are the motors'.
+        """
+        links_nm = 0.0 if self._bias is None else -self._bias[:, self._dofs]
+        friction = DryFriction(self._joints, velocity_rad_s, links_nm)
+        self._torque_nm[:, self._dofs] = self._least_nm + friction.at(driven_nm)
 
 
 def stops_in_a_step(

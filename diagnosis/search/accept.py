@@ -96,17 +96,28 @@ def without_idle_values(judge: Judge, result: SearchResult) -> SearchResult:
     friction alone, since the peak can take any shape. It is kept only if it improves
     the fit as much as one more effect must.
     """
-    winner = result.winner
-    if winner is None:
-        return result
-    start = tuple(effect(placed.name).simpler(placed) for placed in winner.model)
-    if start == winner.model:
-        return result
-    (judged,) = fitted_exactly(judge, [judge.judged([start])[0].model])
-    if judge.worth(judged, winner):
-        return result
-    others = [one for one in result.best[result.chosen] if one.keys != judged.keys]
-    return result.with_models(result.chosen, [judged, *others])
+    while result.winner is not None:
+        starts = simpler_models(result.winner.model)
+        if not starts:
+            break
+        simpler = [judged.model for judged in judge.judged(starts)]
+        best = min(fitted_exactly(judge, simpler), key=lambda judged: judged.evidence)
+        if judge.worth(best, result.winner):
+            break
+        others = [one for one in result.best[result.chosen] if one.keys != best.keys]
+        result = result.with_models(result.chosen, [best, *others])
+    return result
+
+
+def simpler_models(model: Model) -> list[Model]:
+    """Variants of a model with one effect replaced by a simpler form of it."""
+    known = keys_of(model)
+    return [
+        tuple(simpler if other is placed else other for other in model)
+        for placed in model
+        for simpler in effect(placed.name).simpler(placed)
+        if simpler.key not in known
+    ]
 
 
 def without_idle_effects(judge: Judge, result: SearchResult) -> SearchResult:

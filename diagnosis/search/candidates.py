@@ -190,10 +190,11 @@ def moved(fit: Predictor, model: Model) -> list[Model]:
     ]
 
 
-def grown(model: Model) -> list[Model]:
+def grown(fit: Predictor, model: Model) -> list[Model]:
     """Variants of a model with one effect replaced by a more general one."""
     return [
         tuple(grown if other is placed else other for other in model)
         for placed in model
         for grown in grown_from(placed)
+        if grown.place in effect(grown.name).places(fit.plant, fit.traces)
     ]

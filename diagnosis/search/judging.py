@@ -29,8 +29,11 @@ def gain_of_noise(candidates: int, values: int = 1) -> float:
 
 
 def places_of_effects(predictor: Predictor) -> int:
-    """Number of effects at their places that the recordings could show."""
-    kinds = all_effects().values()
+    """Number of effects at their places that are tried on the recordings.
+
+    Those that only grow from others are tried where these help already.
+    """
+    kinds = [one for one in all_effects().values() if not one.only_grown]
     return sum(len(one.places(predictor.plant, predictor.traces)) for one in kinds)
 
 

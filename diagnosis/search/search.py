@@ -59,12 +59,14 @@ class Search:
         chosen, size = 0, 1
         before: Judged | None = None
         while best.get(size):
-            left = best[size][0].fit.residual
-            judge.least_gain = max(starts.gain_by_chance(left), gain_of_noise(1))
+            judge.least_gain = _by_chance(starts, best[size][0])
             believed = judge.believes(best[size][0], before)
             if believed:
+                began = best[size][0].keys
                 best[size] = self._refined(best[size])
                 starts = self._starts_from(best[size][0])
+                if best[size][0].keys != began:  # grown, and leaving less
+                    judge.least_gain = _by_chance(starts, best[size][0])
             leader = best[size][0] if believed else None
             if size == 1 and not anyway and self._most_joints_are_off(leader, starts):
                 self.widespread, chosen = True, int(believed)
@@ -198,7 +200,7 @@ class Search:
             judge.calibrate(before.model)
             first = best[: self._rules.beam]
             others = judge.again(best[self._rules.beam :])
-            wider = [*grown(before.model), *moved(self._fit, before.model)]
+            wider = [*grown(self._fit, before.model), *moved(self._fit, before.model)]
             models = [*(judged.model for judged in first), *wider]
             known = [None, *(judged.fit.jacobian for judged in first[1:])]
             tried = judge.judged(models, [*known, *(None for _ in wider)])
@@ -207,3 +209,8 @@ class Search:
             if same and best[0].energy > before.energy - judge.least_gain:
                 break
         return best
+
+
+def _by_chance(starts: Candidates, best: Judged) -> float:
+    """Gain [nats] that no further effect reaches by chance beside the best model."""
+    return max(starts.gain_by_chance(best.fit.residual), gain_of_noise(1))

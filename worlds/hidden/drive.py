@@ -1,7 +1,7 @@
 """Steps one robot with hidden physics in an engine: servos, joint torques, pushes."""
 
 from collections import deque
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from functools import partial
 from math import ceil
 
@@ -38,10 +38,12 @@ class HiddenJoints:
         effects: Sequence[Hidden],
         step_s: float,
         inertia_kg_m2: FloatArray,
+        links_nm: Callable[[], FloatArray],
     ) -> None:
         """Apply those effects that are at joints to the nominal servos and joints.
 
-        `inertia_kg_m2` (j,) is that at each joint with all other joints free.
+        `inertia_kg_m2` (j,) is that at each joint with all other joints free;
+        `links_nm` is `HiddenEngine.links_nm`.
         """
         self._servos = Servos(plant, step_s)
         self._parts: list[tuple[int, JointTorque]] = []
@@ -51,7 +53,8 @@ class HiddenJoints:
                 joint = plant.joint(effect.place)
                 rigid_nm_rad = plant.rigid_nm_rad(joint)
                 inertia = float(inertia_kg_m2[joint])
-                contact = StiffContact(inertia, step_s, rigid_nm_rad)
+                own_nm = partial(_at, links_nm, joint)
+                contact = StiffContact(inertia, step_s, rigid_nm_rad, own_nm)
                 self._add(joint, effect, contact)
         self._before: FloatArray | None = None
         self.servo_nm = np.zeros(len(plant.joints))
@@ -163,7 +166,7 @@ class HiddenDrive:
         inertia = least_inertia_kg_m2(plant, start_rad)
         around = surroundings(effects)
         self._world, self._step_s = world, step_s
-        self._joints = HiddenJoints(plant, effects, step_s, inertia)
+        self._joints = HiddenJoints(plant, effects, step_s, inertia, world.links_nm)
         held = CommandLine(start_rad, around.command_delay_s / step_s)
         self._line = PathLine(start_rad) if paths else held
         pushes = [(effect.place, effect.kind.push(effect.values)) for effect in effects]
@@ -218,3 +221,8 @@ class HiddenDrive:
     def motor_torques(self) -> FloatArray:
         """(j,) torques [N m] of the motors in the last physics step."""
         return self._joints.servo_nm.copy()
+
+
+def _at(links_nm: Callable[[], FloatArray], joint: int) -> float:
+    """What a function of (j,) torques says of one joint."""
+    return float(links_nm()[joint])

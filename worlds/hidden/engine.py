@@ -82,6 +82,12 @@ class HiddenEngine(Protocol):
     def body_velocity(self, body: str) -> FloatArray:
         """(3,) velocity of a body's centre of mass [m/s]."""
 
+    def links_nm(self) -> FloatArray:
+        """(j,) torques [N m] that gravity and turning links put on a fixed robot.
+
+        They act along the joints, at present angles and speeds without accelerations.
+        """
+
     def watch(self) -> None:
         """Add this step's sensor values to a mean, in the last few steps of a tick."""
 
@@ -92,14 +98,16 @@ class HiddenEngine(Protocol):
         """Free the engine's memory."""
 
 
-def check_engine(name: str, effects: Sequence[Hidden]) -> None:
-    """Refuse effects that an engine cannot compute."""
+def check_engine(name: str, effects: Sequence[Hidden], floating: bool) -> None:
+    """Refuse effects that an engine, or a floating base, cannot have."""
     if name not in ENGINES:
         raise BadValueError(f"engine is {name!r}; it must be {' or '.join(ENGINES)}")
     for effect in effects:
         if name not in effect.kind.engines:
             only = " and ".join(effect.kind.engines)
             raise BadValueError(f"{effect.name} needs the engine {only}, not {name}")
+        if effect.kind.fixed_base_only and floating:
+            raise BadValueError(f"{effect.name} needs a fixed base, not a floating one")
 
 
 def least_inertia_kg_m2(plant: HiddenPlant, pose_rad: FloatArray) -> FloatArray:

@@ -137,6 +137,10 @@ class HiddenMujoco:
         data.qvel[:] = self._before = late
         self._mujoco.mj_comVel(model, data)
 
+    def links_nm(self) -> FloatArray:
+        """(j,) torques [N m] of gravity and turning links, those of the last step."""
+        return np.asarray(-self._data.qfrc_bias[self._dofs])
+
     def push(self, body: str, force_n: FloatArray) -> None:
         """Let a (3,) force act at a body's centre of mass over the next step."""
         self._data.xfrc_applied[self._model.body(body).id, :3] += force_n

@@ -40,7 +40,7 @@ def hidden_engine(
 
     `ground` is that under a floating robot; None for a fixed base.
     """
-    check_engine(name, effects)
+    check_engine(name, effects, plant.floating)
     model = hidden_model(plant, effects, step_s, ground)
     if name == "mujoco":
         return HiddenMujoco(plant, model)
@@ -101,13 +101,18 @@ class HiddenBullet(BulletBody):
 
     def _turning(self, now: FloatArray, late: FloatArray) -> FloatArray:
         """(j,) torques [N m] that turn forces due to speeds from `late` to `now`."""
-        position, rest = self.position_rad.tolist(), [0.0] * len(late)
+        return self._against(now) - self._against(late)
+
+    def _against(self, speed: FloatArray) -> FloatArray:
+        """(j,) torques [N m] of gravity and of links that turn with (j,) speeds."""
+        position, rest = self.position_rad.tolist(), [0.0] * len(speed)
         needed = self.bullet.calculateInverseDynamics
-        one, other = (
-            np.array(needed(self.number, position, speed.tolist(), rest))
-            for speed in (late, now)
-        )
-        return np.asarray(one - other)
+        return -np.array(needed(self.number, position, speed.tolist(), rest))
+
+    def links_nm(self) -> FloatArray:
+        """(j,) torques [N m] of gravity and turning links on a fixed base."""
+        speed = present(self.velocity_rad_s, self._before)
+        return self._against(speed)
 
     def watch(self) -> None:
         """Add this step's foot forces to the mean that `sense` will return."""
@@ -189,9 +194,10 @@ def check_hidden(description: Description, options: WorldOptions) -> None:
     if not options.hidden:
         return
     plant, effects = described_hidden_plant(description, False), _effects(options)
-    check_engine("bullet", effects)
+    check_engine("bullet", effects, floating=not options.fixed_base)
     hidden_model(plant, effects, FINE_STEP_S, None)
-    HiddenJoints(plant, effects, FINE_STEP_S, np.ones(len(plant.joints)))
+    ones = np.ones(len(plant.joints))
+    HiddenJoints(plant, effects, FINE_STEP_S, ones, ones.copy)
 
 
 def _effects(options: WorldOptions) -> tuple[Hidden, ...]:

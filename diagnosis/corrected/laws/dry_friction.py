@@ -11,9 +11,12 @@ from diagnosis.corrected.laws.step import Joint, Law, Step
 class DryFriction(Law):
     """Friction that is larger at rest (Stribeck), or grows with load, or both.
 
-    Beyond the friction of corrected.xml it is extra_nm exp(-(speed / speed_rad_s)^2)
-    + load_share |torque through the gear|. MuJoCo gets it as `dof_frictionloss` before
-    each step, so that it can hold the joint at rest.
+    Beyond the friction of corrected.xml it is, with v the speed, T the motor's torque
+    less its back-EMF, and L the torque of gravity and the links' motion on the joint,
+      |link_share L - load_share T| + exp(-|v / speed_rad_s|^exponent)
+      (extra_nm + |extra_link_share L - extra_load_share T| + extra_square_1_nm P^2).
+    P is the smaller one of T and L where they are opposed, else 0. MuJoCo gets it as
+    `dof_frictionloss` before each step, so that it can hold the joint at rest.
     """
 
     def __init__(
@@ -23,21 +26,35 @@ class DryFriction(Law):
         joint: str,
         extra_nm: float = 0.0,
         speed_rad_s: float = 1.0,
+        exponent: float = 2.0,
         load_share: float = 0.0,
+        link_share: float = 0.0,
+        extra_load_share: float = 0.0,
+        extra_link_share: float = 0.0,
+        extra_square_1_nm: float = 0.0,
     ) -> None:
         """Add friction to a joint; by default it has none beyond corrected.xml's."""
-        self.joint, self.load_share = joints[joint], load_share
-        self.extra_nm, self.speed_rad_s = extra_nm, speed_rad_s
+        self.joint = joints[joint]
+        self.extra_nm, self.extra_square_1_nm = extra_nm, extra_square_1_nm
+        self.speed_rad_s, self.exponent = speed_rad_s, exponent
+        self.shares = link_share, load_share
+        self.extra_shares = extra_link_share, extra_load_share
         self.least_nm = float(model.dof_frictionloss[self.joint.dof])
 
     def before_step(self, step: Step) -> None:
         """Act on the step; see `Law`."""
         joint = self.joint
         speed = step.data.qvel[joint.dof]
-        torque = step.data.actuator_force[joint.actuator] - joint.constant
+        motor = step.data.actuator_force[joint.actuator] - joint.constant
         if not joint.is_spring:  # what drives a spring has passed the back-EMF
-            torque -= joint.back_emf * speed
-            torque += step.torques.get(joint.name, 0.0)
-        slow = self.extra_nm * np.exp(-((speed / self.speed_rad_s) ** 2))
-        loaded = self.load_share * abs(torque)
-        step.model.dof_frictionloss[joint.dof] = self.least_nm + slow + loaded
+            motor -= joint.back_emf * speed
+            motor += step.torques.get(joint.name, 0.0)
+        links = -step.data.qfrc_bias[joint.dof]
+        through = min(abs(motor), abs(links)) if motor * links < 0 else 0.0
+        always, extra = (
+            abs(of_links * links - of_motor * motor)
+            for of_links, of_motor in (self.shares, self.extra_shares)
+        )
+        extra += self.extra_nm + self.extra_square_1_nm * through**2
+        slow = np.exp(-(abs(speed / self.speed_rad_s) ** self.exponent))
+        step.model.dof_frictionloss[joint.dof] = self.least_nm + always + slow * extra

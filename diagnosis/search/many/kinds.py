@@ -51,7 +51,7 @@ def kinds_to_add(
     shared = [one for one in added if one.values <= most]
     apart = [one for one in added if one.values > most]
     apart += _untied(plant, screen, best)
-    return [_likely(shared), [*_likely(apart), *_grown(best.model, without)]]
+    return [_likely(shared), [*_likely(apart), *_grown(fit, best.model, without)]]
 
 
 def _likely(options: Sequence[_Option]) -> list[Model]:
@@ -101,13 +101,17 @@ def _shared(plant: Plant, screen: Screen, best: Judged, name: str) -> Iterator[_
             yield _Option((*best.model, *more), gain, number_of_values(more))
 
 
-def _grown(model: Model, without: Collection[str]) -> Iterator[Model]:
+def _grown(fit: Predictor, model: Model, without: Collection[str]) -> Iterator[Model]:
     """The model with more general forms of a kind of effect at all of its joints."""
     for name in sorted({placed.name for placed in model}):
         rest = tuple(placed for placed in model if placed.name != name)
         own = [grown_from(placed) for placed in model if placed.name == name]
         for forms in zip(*own, strict=True):
-            if not any(one.name in without for one in forms):
+            kind = effect(forms[0].name)
+            places = {one.place for one in forms}
+            if kind.name not in without and places <= {
+                *kind.places(fit.plant, fit.traces)
+            }:
                 yield (*rest, *forms)
 
 

@@ -43,16 +43,28 @@ def shared(fits: Fits, best: Judged) -> Judged:
 def _simplified(fits: Fits, best: Judged) -> Judged:
     """The model with simpler forms of its effects where these explain as much."""
     for group in groups_of(best.model):
-        simpler = {one.key: effect(one.name).simpler(one) for one in group}
-        keys = {one.key for one in simpler.values()}
-        known = {one.key for one in best.model} - set(simpler)
-        if all(simpler[one.key] == one for one in group) or keys & known:
-            continue
-        other = tuple(simpler.get(one.key, one) for one in best.model)
-        tried = fits.fitted(other)
-        if fits.ebic(best).prefers(tried, best):
-            best = tried
+        simpler = True
+        while simpler:
+            simpler = False
+            for other, forms in _simpler(best.model, group):
+                tried = fits.fitted(other)
+                if fits.ebic(best).prefers(tried, best):
+                    keys = {form.key for form in forms}
+                    group = tuple(one for one in tried.model if one.key in keys)
+                    best, simpler = tried, True
+                    break
     return best
+
+
+def _simpler(model: Model, group: Model) -> list[tuple[Model, Model]]:
+    """Models with a group of one kind in simpler forms, and these forms."""
+    found = []
+    for forms in zip(*(effect(one.name).simpler(one) for one in group), strict=True):
+        known = {one.key for one in model}
+        if not known & {form.key for form in forms}:
+            of = {one.key: form for one, form in zip(group, forms, strict=True)}
+            found.append((tuple(of.get(one.key, one) for one in model), forms))
+    return found
 
 
 def _without_idle(fits: Fits, best: Judged) -> Judged:

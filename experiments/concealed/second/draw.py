@@ -55,6 +55,7 @@ def drawn_slots(
     spots = {
         name: kind.spots(plant, scales, joints)
         for name, kind in KINDS.items()
+        if kind.since <= 2  # same draws for ever
         if plan.engine in kind.engines and (kind.in_torques or plan.drive == "servos")
     }
     known = [name for name in spots if spots[name]]

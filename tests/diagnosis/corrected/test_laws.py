@@ -29,9 +29,15 @@ KNEE, ARM = "LKneePitch", "LShoulderPitch"
 SPRING = [("joint_elasticity", KNEE, 40.0, 0.1), ("armature", KNEE, 0.02)]
 PLAY = ("backlash", KNEE, 0.03)
 LATE = ("command_latency", "commands", 0.0133)
+PEAK = 0.05, 0.05, 0.2, 1.3
 ALONE = [
     ("stribeck_friction", KNEE, 0.1, 0.2, 0.1),
     ("load_friction", ARM, 0.4),
+    ("shaped_stribeck_friction", KNEE, 0.1, 0.2, 0.1, 1.3),
+    ("gear_friction", ARM, 0.05, 0.2),
+    ("gear_stribeck_friction", ARM, *PEAK, 0.1, 0.2),
+    ("directional_gear_friction", ARM, *PEAK, 0.05, 0.2, 0.1, 0.3),
+    ("quadratic_gear_friction", ARM, *PEAK, 0.05, 0.2, 0.1, 0.3, 0.5),
     PLAY,
     ("joint_elasticity", KNEE, 40.0, 0.1),
     ("speed_limit", KNEE, 0.8),

@@ -22,6 +22,14 @@ PARAMETERS = {
     "stribeck_friction": "coulomb_torque extra_torque speed",
     "load_friction": "share",
     "presliding": "torque reach",
+    "shaped_stribeck_friction": "coulomb_torque extra_torque speed exponent",
+    "gear_friction": "coulomb_torque share",
+    "gear_stribeck_friction": "coulomb_torque extra_torque speed exponent "
+    "share extra_share",
+    "directional_gear_friction": "coulomb_torque extra_torque speed exponent "
+    "link_share motor_share extra_link_share extra_motor_share",
+    "quadratic_gear_friction": "coulomb_torque extra_torque speed exponent "
+    "link_share motor_share extra_link_share extra_motor_share extra_square",
     "backlash": "gap",
     "joint_elasticity": "stiffness damping",
     "command_latency": "delay",
@@ -75,6 +83,11 @@ def walker(**changes):
     return Plant("walker", spec, ("hip", "knee"), **(given | changes))
 
 
+def able(one):
+    """A plant that can have this effect."""
+    return walker() if one.places(walker(), EVERYTHING) else walker(base="fixed")
+
+
 def trace(**channels):
     time_s = np.arange(3) * 0.01
     return Trace("test", time_s, np.zeros((3, 2)), servo(), **channels)
@@ -123,12 +136,12 @@ def changed_rows(plant, variants):
 
 
 def test_the_library_is_as_specified():
-    plant = walker()
     names = {
         name: " ".join(
             p.name for p in one.parameters(plant, one.places(plant, EVERYTHING)[0])
         )
         for name, one in all_effects().items()
+        for plant in [able(one)]
     }
     assert names == PARAMETERS
     assert list(names) == list(PARAMETERS)
@@ -136,14 +149,15 @@ def test_the_library_is_as_specified():
 
 def test_gears_and_stops_may_yield():
     """Each gives way further than the rigid one, where it says so; others are alike."""
-    plant = walker()
     for name, one in all_effects().items():
+        plant = able(one)
         place = one.places(plant, EVERYTHING)[0]
         typical = tuple(p.typical for p in one.parameters(plant, place))
         placed = PlacedEffect(name, place, typical)
         softer = one.softer(plant, placed)
         assert softer.values[: len(typical)] == typical
         assert (softer != placed) == (name in {"backlash", "end_stop"})
+    plant = walker()
     variants = Variants(plant, 2)
     for row, values in enumerate([(0.02,), (0.02, 1e-3)]):
         effect("backlash").apply(variants, row, "hip", np.array(values))
@@ -163,7 +177,8 @@ def test_a_wrong_name_is_told_the_nearest():
 
 @pytest.mark.parametrize("name", PARAMETERS)
 def test_neutral_values_change_nothing(name):
-    plant, one = walker(), effect(name)
+    one = effect(name)
+    plant = able(one)
     variants = Variants(plant, 2)
     for place in one.places(plant, EVERYTHING):
         neutral = np.array([p.neutral for p in one.parameters(plant, place)])
@@ -173,7 +188,8 @@ def test_neutral_values_change_nothing(name):
 
 @pytest.mark.parametrize("name", PARAMETERS)
 def test_typical_values_change_one_row(name):
-    plant, one = walker(), effect(name)
+    one = effect(name)
+    plant = able(one)
     for place in one.places(plant, EVERYTHING):
         variants = Variants(plant, 3)
         typical = np.array([p.typical for p in one.parameters(plant, place)])
@@ -213,6 +229,13 @@ def test_where_effects_may_be():
         *("speed_limit", "joint_elasticity", "load_friction"),
     }
     assert places["torque_limit"] == ("hip", "knee")
+    by_load = {name for name, found in places.items() if not found}
+    assert by_load == {
+        *("gear_friction", "gear_stribeck_friction"),
+        *("directional_gear_friction", "quadratic_gear_friction"),
+    }
+    for name in by_load:  # the ground would load the gears of legs
+        assert effect(name).places(walker(base="fixed"), EVERYTHING) == ("hip",)
 
 
 def test_only_joints_that_are_driven_have_a_motor():

@@ -86,7 +86,7 @@ def test_dry_friction_that_slides_at_once_has_no_reach():
         (found,) = fit.model
         assert found.values[1] < 5e-4
         assert fit.energy > dry.energy - 6
-        simpler = effect("presliding").simpler(found)
+        (simpler,) = effect("presliding").simpler(found)
         assert simpler.name == "coulomb_friction"
         assert simpler.values == pytest.approx(dry.model[0].values, rel=0.01)
 

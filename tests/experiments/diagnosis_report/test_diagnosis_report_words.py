@@ -31,6 +31,8 @@ from experiments.diagnosis_report.place_words import (
 from experiments.diagnosis_report.text import answer
 from groundwalk.errors import UnknownNameError
 
+STRIBECK = ("coulomb_torque", "extra_torque", "speed", "exponent")
+SIDES = ("link_share", "motor_share", "extra_link_share", "extra_motor_share")
 # Effects with their parameters, as the diagnosis' file format has them.
 PARAMETERS = {
     "viscous_friction": ("coefficient",),
@@ -38,6 +40,11 @@ PARAMETERS = {
     "stribeck_friction": ("coulomb_torque", "extra_torque", "speed"),
     "load_friction": ("share",),
     "presliding": ("torque", "reach"),
+    "shaped_stribeck_friction": STRIBECK,
+    "gear_friction": ("coulomb_torque", "share"),
+    "gear_stribeck_friction": (*STRIBECK, "share", "extra_share"),
+    "directional_gear_friction": (*STRIBECK, *SIDES),
+    "quadratic_gear_friction": (*STRIBECK, *SIDES, "extra_square"),
     "backlash": ("gap",),
     "joint_elasticity": ("stiffness", "damping"),
     "command_latency": ("delay",),

@@ -61,11 +61,12 @@ def test_the_order_from_which_cases_are_drawn_is_fixed():
     assert list(KINDS)[29] == "periodic_torque"
     assert [kind.since for kind in KINDS.values()][:30] == [1] * 30
     assert [kind.since for kind in KINDS.values()][30:37] == [2] * 7
+    assert all(kind.since > 4 for kind in [*KINDS.values()][37:])
 
 
 def test_every_effect_of_the_library_is_there_and_some_that_are_not():
     inside = [name for name, kind in KINDS.items() if not kind.outside]
-    assert len(inside) == 26
+    assert len(inside) == 31
     assert len(KINDS) > 26
 
 

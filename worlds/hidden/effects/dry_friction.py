@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import dataclass
+from typing import Any, Self
 
 from worlds.hidden.effects.kind import (
     HiddenKind,
@@ -34,18 +35,16 @@ class DryFriction:
     _last_rad: float | None = None
 
     @classmethod
-    def of(cls, contact: StiffContact, **torques: float) -> "DryFriction":
-        """Friction of given torques [N m]; it sticks as stiffly as the step allows."""
+    def of(cls, contact: StiffContact, **terms: Any) -> Self:
+        """Friction of given terms [N m]; it sticks as stiffly as the step allows."""
         stiffness = contact.stiffness_nm_rad(contact.rigid_nm_rad)
-        return cls(stiffness, contact.damping_nm_s_rad(stiffness), **torques)
+        return cls(stiffness, contact.damping_nm_s_rad(stiffness), **terms)
 
     def torque(
         self, time_s: float, angle_rad: float, speed_rad_s: float, servo_nm: float
     ) -> float:
         """Friction torque on the joint for the next step [N m]."""
-        most = self.coulomb_nm + self.load_share * abs(servo_nm)
-        if self.extra_nm:
-            most += self.extra_nm * math.exp(-((speed_rad_s / self.speed_rad_s) ** 2))
+        most = self.sliding_nm(speed_rad_s, servo_nm)
         if self._last_rad is not None:
             self._bend_rad += angle_rad - self._last_rad
         self._last_rad = angle_rad
@@ -55,6 +54,13 @@ class DryFriction:
             self._bend_rad = elastic / self.stiffness_nm_rad
         total = elastic + self.damping_nm_s_rad * speed_rad_s
         return -max(-most, min(most, total))
+
+    def sliding_nm(self, speed_rad_s: float, servo_nm: float) -> float:
+        """The torque [N m] at which it slides."""
+        most = self.coulomb_nm + self.load_share * abs(servo_nm)
+        if self.extra_nm:
+            most += self.extra_nm * math.exp(-((speed_rad_s / self.speed_rad_s) ** 2))
+        return most
 
 
 class CoulombFriction(HiddenKind):

@@ -116,11 +116,14 @@ class StiffContact:
 
     The inertia is that seen by a torque at the joint, with all other joints free;
     surfaces that stick and gear teeth that touch have the stiffness `rigid_nm_rad`.
+    `links_nm` tells the torque [N m] that gravity and the links' motion, accelerations
+    left out, put on the joint at present.
     """
 
     inertia_kg_m2: float
     step_s: float
     rigid_nm_rad: float = RIGID_NM_RAD
+    links_nm: Callable[[], float] = float
 
     def stiffness_nm_rad(self, wanted_nm_rad: float) -> float:
         """The wanted stiffness, or the largest that the time step can resolve."""
@@ -150,6 +153,7 @@ class HiddenKind:
       since: the first set of concealed cases that may have it.
       in_torques: whether positions and measured torques show it, so that the commands
         need not be known.
+      fixed_base_only: whether only robots on a fixed base can have it.
       stiff: whether it adds a spring that long physics steps could make unstable.
       apart: kinds that are never drawn into the same case, if `cancels` says so.
       sizes: value of the only parameter for an effect that is easy to detect, and for
@@ -165,6 +169,7 @@ class HiddenKind:
     needs_motion: ClassVar[bool] = False
     since: ClassVar[int] = 1
     in_torques: ClassVar[bool] = False
+    fixed_base_only: ClassVar[bool] = False
     stiff: ClassVar[bool] = False
     apart: ClassVar[tuple[str, ...]] = ()
     sizes: ClassVar[tuple[float, float]]
