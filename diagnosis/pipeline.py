@@ -24,6 +24,7 @@ from diagnosis.conclude.held_out_series import HeldOutSeries, held_out_series
 from diagnosis.conclude.next_experiment import next_experiment
 from diagnosis.conclude.nuisance_found import sure_nuisance
 from diagnosis.conclude.smallest_sizes import smallest_detectable
+from diagnosis.effects.library import keys_within
 from diagnosis.learned import Learned
 from diagnosis.material import Material
 from diagnosis.plant.plant import Plant
@@ -85,7 +86,7 @@ class Diagnosis:
         nuisance = self.test.nuisance
         if nuisance is None or self.verdict.kind == "unknown":
             return ()
-        return acting(self.plant, nuisance.beside({one.key for one in self.model}))
+        return acting(self.plant, nuisance.beside(keys_within(self.model)))
 
     def held_out(self) -> list[HeldOutSeries]:
         """Held-out recordings as measured, and simulated without and with `model`.

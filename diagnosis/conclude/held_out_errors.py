@@ -11,7 +11,7 @@ import numpy as np
 from diagnosis.conclude.answer import alike
 from diagnosis.conclude.controls import controls_of
 from diagnosis.conclude.flexible_regression import flexible_regression_errors
-from diagnosis.effects.library import effect
+from diagnosis.effects.library import effect, keys_within
 from diagnosis.residuals.channels import MORE_THAN_NOISE, channel_unit
 from diagnosis.residuals.predictor import Model, Predictor
 from diagnosis.search.chance import in_standard_errors, independent_blocks
@@ -211,7 +211,7 @@ def beside_control(
     learned, test = sims
     if learned.nuisance is None:
         return sims
-    keys = {one.key for one in model} - {one.key for one in control}
+    keys = keys_within(model) - keys_within(control)
     none = learned.nuisance.none_at(keys)
     learned = learned.moved_to((*control, *none)).with_tolerances_beside(none)
     return learned, test.with_nuisance_of(learned).with_tolerances_beside(none)

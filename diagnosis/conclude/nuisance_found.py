@@ -6,7 +6,7 @@ import numpy as np
 
 from diagnosis.conclude.answer import probability
 from diagnosis.conclude.estimates import Z_80, standard_errors
-from diagnosis.effects.library import effect
+from diagnosis.effects.library import effect, keys_within
 from diagnosis.residuals.data_sets import DataSets
 from diagnosis.residuals.predictor import Model, Predictor
 from diagnosis.residuals.small_mismatch.nuisance import Nuisance
@@ -43,7 +43,7 @@ def sure_nuisance(
     spread = _spread(both, nuisance, model)
     # what chance explains more than in independent noise widens intervals as well
     wider = np.sqrt(max(1.0, least_gain / gain_of_noise(len(spread))))
-    taken, sizes = {one.key for one in model}, nuisance.sizes
+    taken, sizes = keys_within(model), nuisance.sizes
     small, larger = list[Found](), list[Found]()
     for key, group in itertools.groupby(range(len(sizes)), nuisance.key):
         own = list(group)
@@ -85,7 +85,7 @@ def _with_unusual_one(both: Predictor, model: Model, least_gain: float) -> Model
     if both.nuisance is None:
         return None
     (left,) = both.without_tolerances().residuals([model])
-    taken = {one.key for one in model}
+    taken = keys_within(model)
     options = [
         (placed, gain)
         for placed, gain in both.nuisance.unusual(left)

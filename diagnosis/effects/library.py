@@ -1,7 +1,7 @@
 """All effects that a diagnosis can name, and how to add effects of your own."""
 
 import contextlib
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextvars import ContextVar
 from types import MappingProxyType
 
@@ -112,6 +112,20 @@ def containing(placed: PlacedEffect) -> frozenset[str]:
         more = [one for one in grown_from(left.pop()) if one.key not in found]
         found.update(one.key for one in more)
         left += more
+    return frozenset(found)
+
+
+def keys_within(model: Iterable[PlacedEffect]) -> frozenset[str]:
+    """Keys of the effects of a model, and of all simpler effects that they contain.
+
+    Friction with a peak near standstill is dry friction as well, for example.
+    """
+    found, left = set[str](), list(model)
+    while left:
+        placed = left.pop()
+        if placed.key not in found:
+            found.add(placed.key)
+            left += effect(placed.name).simpler(placed)
     return frozenset(found)
 
 

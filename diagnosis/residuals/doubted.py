@@ -8,6 +8,7 @@ from typing import Any, Self
 
 import numpy as np
 
+from diagnosis.effects.library import keys_within
 from diagnosis.plant.plant import Plant
 from diagnosis.residuals.changes import Changes
 from diagnosis.residuals.coordinates import Coordinates
@@ -92,9 +93,7 @@ class Doubted(ABC):
     def with_tolerances_beside(self, model: Model) -> Self:
         """A copy whose tolerances are those of all but a model's effects."""
         tolerance = self._doubts.tolerance
-        return self._with(
-            tolerance=tolerance and tolerance.beside({one.key for one in model})
-        )
+        return self._with(tolerance=tolerance and tolerance.beside(keys_within(model)))
 
     def calibrate(self, model: Model = (), tolerances: bool = True) -> FloatArray:
         """Measure the integration error of a model, and what wrong start states change.

@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from diagnosis.effects.library import keys_within
 from diagnosis.residuals.reference_noise import Block, ReferenceNoise
 from diagnosis.residuals.replays import Model
 from diagnosis.residuals.small_mismatch.nuisance import Nuisance
@@ -51,7 +52,7 @@ class Doubts:
         """The model, what recordings of the healthy robot show, and small mismatch."""
         given = self.noise.model if self.noise else ()
         if self.nuisance is not None:
-            given = (*given, *self.nuisance.beside(_keys(model)))
+            given = (*given, *self.nuisance.beside(keys_within(model)))
         return (*given, *model)
 
     def timed(self, wrong: FloatArray) -> FloatArray:
@@ -65,8 +66,8 @@ class Doubts:
         flat = self.before_tolerance(wrong)
         if self.tolerance is None:
             return flat
-        known = np.array([self.tolerance.taken_back(_keys(one)) for one in models])
-        return self.tolerance.without(flat - known)
+        known = [self.tolerance.taken_back(keys_within(one)) for one in models]
+        return self.tolerance.without(flat - np.array(known))
 
     def before_tolerance(self, wrong: FloatArray) -> FloatArray:
         """(n, N) errors (n, rows, c) without what is no matter of tolerance."""
@@ -109,7 +110,3 @@ class Doubts:
         spread = self.noise.spread if self.noise else None
         tolerance = nuisance.tolerance(spread, self.old).and_of(beyond)
         return replace(self, nuisance=nuisance, tolerance=tolerance)
-
-
-def _keys(model: Model) -> set[str]:
-    return {one.key for one in model}

@@ -6,6 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from diagnosis.audit.audit import audit
+from diagnosis.effects.library import keys_within
 from diagnosis.plant.plant import Plant
 from diagnosis.residuals.channels import Channels
 from diagnosis.residuals.data_sets import longest_window_s
@@ -303,7 +304,7 @@ def _with_likely(predictor: Predictor, model: Model) -> tuple[float, Model]:
     """
     (left,) = predictor.without_tolerances().residuals([model])
     nuisance = predictor.nuisance
-    likely = () if nuisance is None else nuisance.beside({one.key for one in model})
+    likely = () if nuisance is None else nuisance.beside(keys_within(model))
     return 0.5 * float(left @ left), (*likely, *model)
 
 
@@ -313,7 +314,7 @@ def _larger_than_usual(predictor: Predictor, model: Model) -> Model:
         return ()
     (left,) = predictor.without_tolerances().residuals([model])
     least = gain_of_noise(len(predictor.nuisance.units))
-    taken = {one.key for one in model}
+    taken = keys_within(model)
     return tuple(
         placed
         for placed, gain in predictor.nuisance.unusual(left)

@@ -14,6 +14,7 @@ from worlds.hidden.effects import Hidden
 from worlds.hidden.plant import hinged_plant
 from worlds.hidden.recorded import HiddenSensors, hidden_recording
 from worlds.hidden.run import Clock, run_hidden
+from worlds.recordings.load import Load
 from worlds.recordings.metadata import RecordingMetadata
 
 JOINT = "servo"
@@ -27,13 +28,18 @@ KP, EMF = DUTY_1_RAD * STALL_NM, TORQUE_PER_A**2 / OHM
 STEP_S, TICK_S, NOISE_RAD = 0.0005, 0.01, 3e-4
 
 
-def xml(mass_kg, lever_m):
-    """MJCF of a mass on a light lever, behind the rotor."""
+def xml(load=None):
+    """MJCF of a light lever behind the rotor, and of a load that it carries."""
+    carried = ""
+    if load is not None:
+        place = " ".join(map(str, load.at))
+        carried = f"""<body pos="{place}">
+          <inertial pos="0 0 0" mass="{load.mass}" diaginertia="0 0 0"/></body>"""
     return f"""<mujoco model="bench"><compiler angle="radian"/><worldbody>
       <body name="lever"><joint name="{JOINT}" axis="0 1 0" range="-3 3"
         armature="{ROTOR_KG_M2}"/>
-      <inertial pos="0 0 -{lever_m}" mass="{mass_kg}" diaginertia=".001 .001 .001"/>
-      </body></worldbody></mujoco>"""
+      <inertial pos="0 0 -.05" mass=".1" diaginertia=".001 .001 .001"/>
+      {carried}</body></worldbody></mujoco>"""
 
 
 def command(time_s, seed):
@@ -48,21 +54,26 @@ def command(time_s, seed):
     return (rise * (slow + fast) + hop)[:, None]
 
 
-def hidden_bench(mass_kg, lever_m):
-    """The bench as the hidden world has it, without friction."""
+def load(mass_kg, lever_m):
+    """A known mass on the lever."""
+    return Load(mass_kg, (0.0, 0.0, -lever_m))
+
+
+def hidden_bench(carried):
+    """The bench as the hidden world has it, with its load and without friction."""
     servo = np.array([KP, 0.0, STALL_NM, 5.0])
-    bare = hinged_plant("bench", "bench.xml", xml(mass_kg, lever_m), servo)
+    bare = hinged_plant("bench", "bench.xml", xml(carried), servo)
     return replace(bare, back_emf_nm_s_rad=np.array([EMF]))
 
 
-def recorded(effects, plant, mass_kg, lever_m, seed, duration_s=12.0, engine="mujoco"):
-    """A trace of the bench with hidden effects, given as texts."""
+def recorded(effects, plant, carried, seed, duration_s=12.0, engine="mujoco"):
+    """A trace of the bench with a load and hidden effects, given as texts."""
     hidden = [Hidden.parse(text) for text in effects]
     rows = round(duration_s / TICK_S) + 1
     targets = command(np.arange(rows) * TICK_S, seed)
     clock = Clock(STEP_S, np.arange(rows) * round(TICK_S / STEP_S), 0)
     nobody = np.random.SeedSequence(seed)
-    bench = hidden_bench(mass_kg, lever_m)
+    bench = hidden_bench(carried)
     run = run_hidden(
         bench,
         hidden,
@@ -74,19 +85,26 @@ def recorded(effects, plant, mass_kg, lever_m, seed, duration_s=12.0, engine="mu
     )
     assert run.ok
     sensors = HiddenSensors(encoder_rad=NOISE_RAD)
-    metadata = RecordingMetadata("bench.xml", "fixed", "test", bench.servo)
+    metadata = RecordingMetadata(
+        "bench.xml", "fixed", "test", bench.servo, {"lever": carried}
+    )
     rng = np.random.default_rng(seed + 1)
     recording = hidden_recording(bench, run, hidden, sensors, rng, metadata)
     return trace_of(recording, plant, f"bench_{seed}")
 
 
-def nominal(tmp_path, mass_kg, lever_m):
-    """The model of the bench, which has no friction."""
+def nominal(tmp_path, *loads):
+    """The model of the bench, which has no friction, for recordings with these loads.
+
+    Its back-EMF is outside of the torque limit.
+    """
     path = tmp_path / "bench.xml"
-    path.write_text(xml(mass_kg, lever_m))
-    plant = load_plant(path, "fixed", (JOINT,))
+    path.write_text(xml())
+    plant = load_plant(path, "fixed", (JOINT,)).bearing(
+        [{"lever": one} for one in loads]
+    )
     spec, servo = plant.spec.copy(), (KP, 0.0, STALL_NM, EMF)
-    joint = spec.joint(JOINT)  # back-EMF is outside of the torque limit
+    joint = spec.joint(JOINT)
     joint.damping = [joint.damping[0] + EMF, *joint.damping[1:]]
     motor = Servo(*(np.array([value]) for value in servo))
     return replace(plant, spec=spec, servo=motor)

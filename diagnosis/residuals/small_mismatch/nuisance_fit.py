@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from diagnosis.effects.library import keys_within
 from diagnosis.residuals.changes import Changes
 from diagnosis.residuals.channels import MORE_THAN_NOISE
 from diagnosis.residuals.coordinates import Coordinates
@@ -321,7 +322,7 @@ class NuisanceFit:
 
     @property
     def _keys(self) -> frozenset[str]:
-        return frozenset(one.key for one in self.model)
+        return keys_within(self.model)
 
 
 def _is_far_off(left: FloatArray) -> bool:

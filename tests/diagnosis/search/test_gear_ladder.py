@@ -1,4 +1,4 @@
-"""Rungs of the friction ladder are told apart on a bench, by fits on their twins."""
+"""Rungs of the friction ladder are told apart on a bench with known loads."""
 
 import numpy as np
 import pytest
@@ -10,17 +10,19 @@ from servo_bench import (
     STALL_NM,
     SUPPLY_V,
     TORQUE_PER_A,
+    load,
     nominal,
     recorded,
 )
 
 from diagnosis.effects.library import effect
 from diagnosis.effects.parts import PlacedEffect
+from diagnosis.pipeline import diagnose
 from diagnosis.residuals.predictor import Predictor
 from diagnosis.search.fitting import fit_all
 from worlds.hidden.servos import servo_torque_nm
 
-MASS_KG, LEVER_M = 2.0, 0.2
+LOAD = load(2.0, 0.2)
 PEAK = (0.1, 0.2, 0.6, 1.4)
 TRUTHS = {
     "gear_friction": (0.1, 0.12),
@@ -41,14 +43,17 @@ def test_a_voltage_at_a_motor_is_a_servo_with_back_emf():
     np.testing.assert_allclose(servo_torque_nm(gains, error, speed), wanted)
 
 
+def as_text(plant, truth):
+    """An effect as the hidden world reads it."""
+    names = [one.name for one in effect(truth.name).parameters(plant, truth.place)]
+    pairs = zip(names, truth.values, strict=True)
+    return f"{truth.key}:" + ",".join(f"{name}={value}" for name, value in pairs)
+
+
 def bench(tmp_path, truth):
     """A predictor of one recording of the bench with the effect `truth`."""
-    parameters = effect(truth.name).parameters
-    plant = nominal(tmp_path, MASS_KG, LEVER_M)
-    names = [one.name for one in parameters(plant, JOINT)]
-    pairs = zip(names, truth.values, strict=True)
-    text = f"{truth.key}:" + ",".join(f"{name}={value}" for name, value in pairs)
-    trace = recorded([text], plant, MASS_KG, LEVER_M, seed=1, duration_s=6.0)
+    plant = nominal(tmp_path, LOAD)
+    trace = recorded([as_text(plant, truth)], plant, LOAD, seed=1, duration_s=6.0)
     predictor = Predictor(plant, [trace])
     predictor.calibrate((truth,))
     return predictor
@@ -91,3 +96,33 @@ def test_a_rung_gains_no_more_than_chance_where_the_one_below_is_true(name, tmp_
     truth = simpler_of(PlacedEffect(name, JOINT, TRUTHS[name]))
     more = gain(bench(tmp_path, truth), truth, name)
     assert more < 10.0
+
+
+LOADS = [load(mass, lever) for lever in (0.1, 0.15) for mass in (0.5, 1.0, 1.5, 3.0)]
+RUNGS = {
+    "shaped_stribeck_friction": (0.3, 0.2, 0.6, 1.4),
+    "quadratic_gear_friction": (0.1, 0.2, 0.6, 1.4, 0.05, 0.1, 0.05, 0.1, 0.02),
+}
+VISCOUS = PlacedEffect("viscous_friction", JOINT, (0.05,))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", RUNGS)
+def test_four_masses_on_two_levers_tell_the_rung(name, tmp_path):
+    plant = nominal(tmp_path, *LOADS)
+    truth = PlacedEffect(name, JOINT, RUNGS[name])
+    hidden = [as_text(plant, truth), as_text(plant, VISCOUS)]
+    traces = [
+        recorded(hidden, plant, carried, seed=1 + number, duration_s=6.0)
+        for number, carried in enumerate(LOADS)
+    ]
+    found = diagnose(plant, traces, np.random.SeedSequence(1))
+    assert [(one.name, one.place) for one in found.verdict.effects] == [(name, JOINT)]
+    left, least = found.test.residuals([found.model, (truth, VISCOUS)])
+    assert left @ left < 1.2**2 * (least @ least)
+    values = {
+        key: one.value for key, one in found.verdict.effects[0].parameters.items()
+    }
+    right = dict(zip(values, truth.values, strict=True))
+    for key in ("extra_torque", "link_share", "motor_share"):
+        assert key not in right or values[key] == pytest.approx(right[key], rel=0.2)
