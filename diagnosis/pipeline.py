@@ -33,6 +33,7 @@ from diagnosis.residuals.mismatch_map import mismatch_map, unexplained
 from diagnosis.residuals.predictor import Model, Predictor
 from diagnosis.residuals.small_mismatch.usual_errors import acting
 from diagnosis.search.hooks import Hooks
+from diagnosis.search.judging import places_of_effects
 from diagnosis.search.reference import (
     reference_limit,
 )
@@ -208,6 +209,7 @@ def _verdict(learned: Learned, tested: Tested) -> Verdict:
             material.plant, learned.result, material.traces
         ),
         recordings=data.recordings(),
+        tried=places_of_effects(judge.fit),
     )
 
 

@@ -4,31 +4,22 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from diagnosis.conclude.block_errors import (
+    PRIOR_SPREAD,
+    block_variance,
+    information,
+)
+from diagnosis.conclude.recordings_alone import errors_between_recordings, said_alone
 from diagnosis.effects.library import effect
-from diagnosis.residuals.coordinates import STEP
+from diagnosis.residuals.coordinates import STEP, Coordinates
 from diagnosis.residuals.predictor import Predictor
 from diagnosis.residuals.ties import groups_of
 from diagnosis.search.fitting import FittedModel
-from diagnosis.verdict import Estimate
-from groundwalk.arrays import BoolArray, FloatArray, IntArray
+from diagnosis.verdict import Estimate, ValueRange
+from groundwalk.arrays import BoolArray, FloatArray
 
 Z_80 = 1.2815515655446004
 """Half width of an 80 % interval of the normal distribution, in standard deviations."""
-
-PRIOR_SPREAD = 10.0
-"""Standard deviation of the prior on values, in coordinates scaled to be of order one:
-values that the data do not determine get intervals about this wide."""
-
-FEWEST = 8
-"""Fewest time blocks from which a correlation of the errors in neighbouring ones is
-estimated."""
-
-LEAST_SHARE = 1e-3
-"""Share of what all recordings tell of a value from which on one tells something."""
-
-SIGNIFICANT = 2.0
-"""A correlation of the errors in neighbouring time blocks counts as real from this
-multiple of the standard deviation that chance gives it."""
 
 
 def estimates(predictor: Predictor, fit: FittedModel) -> list[Mapping[str, Estimate]]:
@@ -40,20 +31,52 @@ def estimates(predictor: Predictor, fit: FittedModel) -> list[Mapping[str, Estim
     """
     spreads = largest_errors, spread_of_joints, spread_of_starts, spread_of_softness
     deviation = np.linalg.norm([one(predictor, fit) for one in spreads], axis=0)
-    x = fit.coordinates.of(fit.model)
-    ends = np.array(
-        [fit.coordinates.values_at(x + side * Z_80 * deviation) for side in (-1, 1)]
-    )
+    x, coordinates = fit.coordinates.of(fit.model), fit.coordinates
+    ranges = value_ranges(coordinates, x, deviation)
+    alone = {
+        name: value_ranges(coordinates, own, errors)
+        for name, (own, errors) in said_alone(predictor, fit).items()
+    }
+    ends = [coordinates.values_at(one) for one in ends_of_starts(predictor, fit)]
+    ended = np.reshape(ends, (-1, len(x)))
     every: list[Mapping[str, Estimate]] = []
-    for placed, columns in zip(fit.model, fit.coordinates.columns, strict=True):
+    for placed, columns in zip(fit.model, coordinates.columns, strict=True):
         own = {}
         for value, i in zip(placed.values, columns, strict=True):
-            parameter, pair = fit.coordinates.parameters[i], ends[:, i].tolist()
-            unit = predictor.plant.unit(parameter.unit, placed.place)
-            low, high = min(*pair, value), max(*pair, value)
-            own[parameter.name] = Estimate(value, low, high, unit)
+            parameter, stated = coordinates.parameters[i], ranges[i]
+            low, high = (stated.low, stated.high) if stated else (value, value)
+            own[parameter.name] = Estimate(
+                value,
+                min(low, value),
+                max(high, value),
+                predictor.plant.unit(parameter.unit, placed.place),
+                parameter.neutral if np.isfinite(parameter.neutral) else None,
+                {name: one for name, some in alone.items() if (one := some[i])},
+                _ends(ended[:, i]),
+            )
         every.append(own)
     return every
+
+
+def _ends(values: FloatArray) -> tuple[float, float] | None:
+    """The lowest and the highest of some values; None of none."""
+    return (float(values.min()), float(values.max())) if len(values) else None
+
+
+def value_ranges(
+    coordinates: Coordinates, x: FloatArray, deviation: FloatArray
+) -> list[ValueRange | None]:
+    """Values with 80 % intervals at (p,) scaled coordinates; None at those not known.
+
+    `deviation` (p,) are standard deviations, NaN where nothing is known.
+    """
+    known = np.isfinite(x) & np.isfinite(deviation)
+    points = [np.where(known, x + side * Z_80 * deviation, 0.0) for side in (-1, 0, 1)]
+    every = zip(*map(coordinates.values_at, points), known, strict=True)
+    return [
+        ValueRange(value, min(low, value), max(high, value)) if sure else None
+        for low, value, high, sure in every
+    ]
 
 
 def largest_errors(predictor: Predictor, fit: FittedModel) -> FloatArray:
@@ -72,7 +95,7 @@ def standard_errors(predictor: Predictor, fit: FittedModel) -> FloatArray:
     finite differences.
     """
     jacobian, residual = fit.jacobian, fit.residual
-    bread = np.linalg.inv(_information(jacobian))
+    bread = np.linalg.inv(information(jacobian))
     influence = (jacobian * residual[:, None]) @ bread
     variance = block_variance(influence, predictor.block)
     white = np.diag(bread)
@@ -104,19 +127,30 @@ def spread_of_joints(predictor: Predictor, fit: FittedModel) -> FloatArray:
 def spread_of_starts(predictor: Predictor, fit: FittedModel) -> FloatArray:
     """(p,) rms distances, in scaled coordinates, to where fits from other values end.
 
+    0 without such fits.
+    """
+    ends = ends_of_starts(predictor, fit)
+    if not len(ends):
+        return np.zeros(fit.jacobian.shape[1])
+    x = fit.coordinates.of(fit.model)
+    return np.asarray(np.sqrt(np.mean((ends - x) ** 2, axis=0)))
+
+
+def ends_of_starts(predictor: Predictor, fit: FittedModel) -> FloatArray:
+    """(m, p) scaled coordinates at which fits end that begin at other values.
+
     Small mismatch is fitted as well. Where replays change at random, as with dry
-    friction and play, fits stop anywhere in a valley. 0 where it is not fitted.
+    friction and play, fits stop anywhere in a valley. None where it is not fitted.
     """
     x, (low, high) = fit.coordinates.of(fit.model), fit.coordinates.bounds()
     nuisance = predictor.nuisance if predictor.fits_nuisance else None
     if nuisance is None:
-        return np.zeros(len(x))
+        return np.empty((0, len(x)))
     sign = (-1) ** np.arange(len(x)), (-1) ** (np.arange(len(x)) // 2)
     starts = np.array([x + STEP * way * one for one in sign for way in (-1, 1)])
     fits = predictor.nuisance_fit(fit.model)
     starts = np.unique(np.clip(starts, low, high), axis=0)
-    ends = fits.ends(nuisance, starts)
-    return np.asarray(np.sqrt(np.mean((ends - x) ** 2, axis=0)))
+    return fits.ends(nuisance, starts)
 
 
 def spread_of_softness(predictor: Predictor, fit: FittedModel) -> FloatArray:
@@ -135,43 +169,8 @@ def spread_of_softness(predictor: Predictor, fit: FittedModel) -> FloatArray:
         return np.zeros(fit.jacobian.shape[1])
     rigid, *left = predictor.residuals([model, *softer])
     absorbed = fit.jacobian.T @ (np.array(left) - rigid).T
-    shifts = np.linalg.solve(_information(fit.jacobian), absorbed)
+    shifts = np.linalg.solve(information(fit.jacobian), absorbed)
     return np.asarray(np.linalg.norm(shifts, axis=1))
-
-
-def errors_between_recordings(predictor: Predictor, fit: FittedModel) -> FloatArray:
-    """(p,) standard errors, in scaled coordinates, if recordings truly differ.
-
-    A value may be another one in each recording, as a delay is that a bus and a motor
-    make together; parts of one recording then agree. How much recordings differ beyond
-    their errors follows from the values that each of them tells (DerSimonian and Laird
-    1986, "Meta-analysis in clinical trials"), to first order from the Jacobian.
-    """
-    bread = np.linalg.inv(_information(fit.jacobian))
-    names = [trace.recording for trace in predictor.traces]
-    own = np.unique(names, return_inverse=True)[1][predictor.trace]
-    every = [fit.jacobian * (own == k)[:, None] for k in np.unique(own)]
-    shares = np.array([np.diag(bread @ one.T @ one) for one in every])
-    shifts = np.array([-bread @ one.T @ fit.residual for one in every])
-    influence = (fit.jacobian * fit.residual[:, None]) @ bread
-    white = np.diag(bread)
-    error = np.maximum(block_variance(influence, predictor.block), white)
-    found = error.copy()
-    for i, squared in enumerate(error):
-        tells = shares[:, i] > LEAST_SHARE
-        weight = shares[tells, i]
-        value = shifts[tells, i] / weight
-        if tells.sum() > 1:
-            found[i] += _between(value, weight / squared) * np.sum(weight**2)
-    return np.asarray(np.sqrt(found))
-
-
-def _between(values: FloatArray, weights: FloatArray) -> float:
-    """Variance of k values beyond that of their errors, 1 / weights; 0 if not more."""
-    total = float(weights.sum())
-    scatter = float(weights @ (values - weights @ values / total) ** 2)
-    beyond = scatter - (len(values) - 1)
-    return max(beyond / (total - float(weights @ weights) / total), 0.0)
 
 
 def spread_of_recordings(predictor: Predictor, fit: FittedModel) -> FloatArray:
@@ -189,39 +188,4 @@ def spread_of_recordings(predictor: Predictor, fit: FittedModel) -> FloatArray:
 def _without(fit: FittedModel, kept: BoolArray) -> FloatArray:
     """(p,) change of the fitted values, in scaled coordinates, by some of the data."""
     jacobian, residual = fit.jacobian[kept], fit.residual[kept]
-    information = _information(jacobian)
-    return np.asarray(-np.linalg.solve(information, jacobian.T @ residual))
-
-
-def _information(jacobian: FloatArray) -> FloatArray:
-    """(p, p) information on the values in a fit with this (N, p) Jacobian."""
-    prior = np.eye(jacobian.shape[1]) / PRIOR_SPREAD**2
-    return np.asarray(jacobian.T @ jacobian + prior)
-
-
-def block_variance(influence: FloatArray, block: IntArray) -> FloatArray:
-    """(p,) variances of fitted values if residuals of one time block are correlated.
-
-    The influences are summed within each block and the squares of the sums are added,
-    which is right if blocks are independent. If neighbouring blocks are significantly
-    correlated, they are joined in pairs until they are not: friction that varies with
-    the position, for example, causes an error as long as a stroke lasts.
-
-    `influence` (N, p) is the change of each value by each entry of the residual,
-    `block` (N,) the number of each entry's time block, increasing with time.
-    """
-    sums = np.zeros((int(block.max()) + 1, influence.shape[1]))
-    np.add.at(sums, block, influence)
-    return np.array([_variance(column) for column in sums.T])
-
-
-def _variance(sums: FloatArray) -> float:
-    """Variance of an estimated value from (blocks,) shifts of it by each time block."""
-    variance = float(sums @ sums)
-    if len(sums) < FEWEST or variance <= 0:
-        return variance
-    alike = float(sums[1:] @ sums[:-1]) / variance
-    if alike < SIGNIFICANT / np.sqrt(len(sums)):
-        return variance
-    padded = np.append(sums, 0.0) if len(sums) % 2 else sums
-    return _variance(padded.reshape(-1, 2).sum(axis=1))
+    return np.asarray(-np.linalg.solve(information(jacobian), jacobian.T @ residual))

@@ -163,6 +163,7 @@ def _found(
             min(low[i], value[i]),
             max(high[i], value[i]),
             both.plant.unit(one.unit, unit.place),
+            one.neutral if np.isfinite(one.neutral) else None,
         )
         for i, one in enumerate(every)
     }

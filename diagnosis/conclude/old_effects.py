@@ -20,7 +20,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from diagnosis.conclude.estimates import PRIOR_SPREAD, standard_errors
+from diagnosis.conclude.block_errors import PRIOR_SPREAD
+from diagnosis.conclude.estimates import standard_errors
 from diagnosis.effects.library import effect, lasts
 from diagnosis.residuals.coordinates import Coordinates
 from diagnosis.residuals.predictor import Model, Predictor

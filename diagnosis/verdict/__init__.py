@@ -13,6 +13,7 @@ from diagnosis.verdict.parts import Pulse as Pulse
 from diagnosis.verdict.parts import PulseSource as PulseSource
 from diagnosis.verdict.parts import Recordings as Recordings
 from diagnosis.verdict.parts import Unexplained as Unexplained
+from diagnosis.verdict.parts import ValueRange as ValueRange
 from diagnosis.verdict.parts import When as When
 from diagnosis.verdict.verdict import ChannelFit as ChannelFit
 from diagnosis.verdict.verdict import Errors as Errors

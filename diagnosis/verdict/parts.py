@@ -18,20 +18,20 @@ Example:
 
 
 @dataclass(frozen=True)
-class Estimate:
-    """An estimate with the ends of its 80 % interval.
+class ValueRange:
+    """A value with the ends of its 80 % interval.
 
-    In 80 of 100 diagnoses the interval holds the true value.
+    Raises:
+      BadValueError: a number is not finite, or the value lies outside its interval.
 
     Example:
-      >>> Estimate(0.03, 0.027, 0.034, "rad").value
-      0.03
+      >>> ValueRange(0.03, 0.027, 0.034).low
+      0.027
     """
 
     value: float
     low: float
     high: float
-    unit: str
 
     def __post_init__(self) -> None:
         """Refuse intervals outside of which their value lies."""
@@ -42,6 +42,31 @@ class Estimate:
                 f"value {self.value:g} must lie in its interval, "
                 f"{self.low:g} to {self.high:g}"
             )
+
+
+@dataclass(frozen=True)
+class Estimate(ValueRange):
+    """An estimate with the ends of its 80 % interval, and how it was checked.
+
+    In 80 of 100 diagnoses the interval holds the true value.
+
+    Attributes:
+      nominal: the value at which the sim has nothing of the effect; None if that is
+        infinite (as the stiffness of a rigid gear), or not known.
+      recordings: what each recording says of it alone, by the recording's name; empty
+        if there is only one, and without those that say nothing.
+      starts: lowest and highest value at which fits ended that began at other values;
+        None if there were none.
+
+    Example:
+      >>> Estimate(0.03, 0.027, 0.034, "rad").value
+      0.03
+    """
+
+    unit: str
+    nominal: float | None = None
+    recordings: Mapping[str, ValueRange] = field(default_factory=dict)
+    starts: tuple[float, float] | None = None
 
 
 @dataclass(frozen=True)

@@ -4,7 +4,7 @@ import json
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Literal
+from typing import Any, Literal
 
 from diagnosis.verdict.parts import (
     Amount,
@@ -130,6 +130,7 @@ class Verdict:
       pulses: torques that servos did not ask for, in the order of time.
       fit: errors of nominal and corrected sim on held-out data.
       next_experiment: what to record next; None if nothing is open.
+      tried: number of effects at their places that were compared; None if unknown.
       seconds: duration of the diagnosis.
 
     Example:
@@ -149,6 +150,7 @@ class Verdict:
     fit: Fit | None = None
     next_experiment: NextExperiment | None = None
     recordings: Recordings = field(default_factory=Recordings)
+    tried: int | None = None
     seconds: float = 0.0
 
     def __post_init__(self) -> None:
@@ -187,10 +189,24 @@ class Verdict:
             unknown, or a value is wrong.
         """
         plain = parse_object(text, "verdict", FORMAT)
-        plain.setdefault("pulses", [])  # the first verdicts had no such keys
-        plain.setdefault("small", [])
-        effects = plain.get("effects")
-        for one in effects if isinstance(effects, list) else []:
-            if isinstance(one, dict):
-                one.setdefault("shared_with", [])
+        _add_later_keys(plain)
         return from_plain(cls, plain, "verdict")
+
+
+def _add_later_keys(plain: dict[str, Any]) -> None:
+    """Add keys that the first verdicts did not have, with values that say nothing."""
+    for key, nothing in (("pulses", []), ("small", []), ("tried", None)):
+        plain.setdefault(key, nothing)
+    for kind in ("effects", "small"):
+        effects = plain.get(kind)
+        for one in effects if isinstance(effects, list) else []:
+            if not isinstance(one, dict):
+                continue
+            one.setdefault("shared_with", [])
+            parameters = one.get("parameters")
+            every = parameters.values() if isinstance(parameters, dict) else ()
+            for value in every:
+                if isinstance(value, dict):
+                    value.setdefault("nominal", None)
+                    value.setdefault("recordings", {})
+                    value.setdefault("starts", None)

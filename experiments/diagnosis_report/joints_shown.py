@@ -3,13 +3,15 @@
 from collections.abc import Sequence
 from typing import Any
 
-from diagnosis import Diagnosis, Trace
+from diagnosis import Diagnosis, Trace, Verdict
 from diagnosis.seen import Delay, Seen, SeenJoint, Share, look
 from diagnosis.seen.drivers import OTHERS
 from experiments.diagnosis_report.figure_style import inline_svg, slim
+from experiments.diagnosis_report.findings import finding
 from experiments.diagnosis_report.joint_figures import NOTHING, joint_figure
-from experiments.diagnosis_report.numbers import DASH, percent
-from experiments.diagnosis_report.place_words import listing
+from experiments.diagnosis_report.numbers import DASH, percent, sure_text
+from experiments.diagnosis_report.place_words import at_words, listing, sentence
+from experiments.diagnosis_report.text import next_step
 
 MOST_FIGURES = 8
 """Largest number of joints that are drawn; the table has all."""
@@ -59,8 +61,8 @@ def look_at(found: Diagnosis, traces: Sequence[Trace]) -> Seen:
     return look(found.plant, traces, model)
 
 
-def joints_shown(seen: Seen) -> dict[str, Any]:
-    """What the page's template shows of all joints."""
+def joints_shown(seen: Seen, verdict: Verdict) -> dict[str, Any]:
+    """What the page's template shows of all joints, and of what was found at each."""
     drawn = [one for one in seen.joints if one.curves]
     largest = sorted(drawn, key=lambda one: -(one.loss_rms or 0.0))[:MOST_FIGURES]
     names = {one.joint for one in largest}
@@ -69,13 +71,39 @@ def joints_shown(seen: Seen) -> dict[str, Any]:
         "rows": [_row(one) for one in seen.joints],
         "unknown": _unknown(seen),
         "figures": [
-            {"name": _title(one), "svg": _svg(one, f"joint{k}")}
+            {
+                "name": _title(one),
+                "svg": _svg(one, f"joint{k}"),
+                "found": _found_at(one.joint, verdict),
+            }
             for k, one in enumerate(seen.joints)
             if one.joint in names
         ],
         "left_out": len(drawn) - len(largest),
         "read": READ if drawn else "",
     }
+
+
+def _found_at(joint: str, verdict: Verdict) -> list[str]:
+    """Sentences on what was found at a joint, or that nothing was, and what would tell.
+
+    A joint without a finding of its own may move the body that has one.
+    """
+    own = [
+        one
+        for one in verdict.effects
+        if joint in (one.place, *one.shared_with) and one.when.recording is None
+    ]
+    lines = []
+    for one in own:
+        others = [at_words(other) for other in one.confusable_with]
+        instead = f"; it may be {listing(others, 'or')} instead" if others else ""
+        said = f"{finding(one)}: {sure_text(one.probability)}{instead}"
+        lines.append(sentence(said))
+    step = verdict.next_experiment
+    if step is not None and step.joint == joint:
+        lines.append(f"What would tell: {next_step(verdict)}")
+    return lines or ["No effect was found at this joint itself."]
 
 
 def _what(seen: Seen) -> str:

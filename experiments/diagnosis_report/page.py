@@ -13,6 +13,7 @@ from diagnosis.seen import Seen
 from diagnosis.traces.time_line import Stretch
 from diagnosis.verdict import Errors, Fit, Found
 from experiments.diagnosis_report.advice import advised
+from experiments.diagnosis_report.agreement import checked
 from experiments.diagnosis_report.corrected_files import how_simulated
 from experiments.diagnosis_report.figure_style import inline_svg
 from experiments.diagnosis_report.figures import (
@@ -110,7 +111,7 @@ def write_report(
       >>> write_report(Path("report.html"), found.verdict, found.held_out(), facts)
     """
     parts = _words(verdict, facts) | _shown(verdict, series)
-    parts["joints"] = None if seen is None else joints_shown(seen)
+    parts["joints"] = None if seen is None else joints_shown(seen, verdict)
     parts["time_line"] = time_line_shown(time_line) if time_line else None
     write_text(path, render(TEMPLATE, **parts))
 
@@ -128,6 +129,7 @@ def _words(verdict: Verdict, facts: ReportFacts) -> dict[str, Any]:
         "doubts": doubts(verdict),
         "next_step": next_step(verdict),
         "effects": [_effect_row(effect) for effect in verdict.effects],
+        "checked": checked(verdict.effects),
         "smallest": [
             {**_label_and_place(*key.split("@", 1)), "amount": amount_text(amount)}
             for key, amount in sorted(verdict.smallest_detectable.items())
@@ -135,6 +137,7 @@ def _words(verdict: Verdict, facts: ReportFacts) -> dict[str, Any]:
         "fit_rows": _fit_rows(verdict.fit) if verdict.fit else [],
         "shown_rows": SHOWN_ROWS,
         "noise_floor": NOISE_FLOOR,
+        "dash": DASH,
         "command": facts.command,
         "made": [
             ("robot", f"{facts.robot}, {facts.base} base"),

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from diagnosis.conclude.estimates import block_variance
+from diagnosis.conclude.block_errors import block_variance
 
 BLOCKS, ROWS = 128, 10
 BLOCK = np.repeat(np.arange(BLOCKS), ROWS)

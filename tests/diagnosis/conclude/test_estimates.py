@@ -7,14 +7,14 @@ import pytest
 from made_up_traces import arm
 from scipy.stats import binom
 
-from diagnosis.conclude import estimates as module
+from diagnosis.conclude import recordings_alone as module
 from diagnosis.conclude.estimates import (
     Z_80,
-    errors_between_recordings,
     estimates,
     spread_of_recordings,
     standard_errors,
 )
+from diagnosis.conclude.recordings_alone import errors_between_recordings, said_alone
 from diagnosis.effects.parts import PlacedEffect
 from diagnosis.residuals.coordinates import STEP, Coordinates
 from diagnosis.search.fitting import FittedModel
@@ -114,6 +114,43 @@ def test_recordings_that_disagree_widen_an_interval_though_their_parts_agree():
     assert error > 1.4 * standard_errors(predictor, apart)[0]
     alike = errors_between_recordings(predictor, fit)[0]
     assert alike == pytest.approx(standard_errors(predictor, fit)[0], rel=0.5)
+
+
+def test_each_recording_says_its_own_value():
+    predictor, fit, x = toy(0, 0.0)
+    signs = np.array([1.0, -1.0, 1.0, -1.0])
+    shifted = fit.residual + 5.0 * signs[predictor.trace] * fit.jacobian[:, 0]
+    apart = FittedModel(fit.model, shifted, fit.jacobian, fit.coordinates)
+    found = said_alone(predictor, apart)
+    assert list(found) == ["0", "1", "2", "3"]
+    own = np.array([values[0] for values, _ in found.values()])
+    # the residual grows with the value, so that a larger one asks for a smaller value
+    np.testing.assert_allclose(own - x[0], -5.0 * signs, rtol=0.4)
+    alone = estimates(predictor, apart)[0]["offset"].recordings
+    scale = fit.coordinates.values_at(np.array([1.0, 0.0, 0.0]))[0]
+    assert [one.value for one in alone.values()] == pytest.approx(scale * own)
+    assert all(one.low < one.value < one.high for one in alone.values())
+
+
+def test_recordings_that_agree_say_the_value_in_their_intervals():
+    held = 0
+    for seed in range(DIAGNOSES // RECORDINGS):
+        predictor, fit, _ = toy(seed, 0.0)
+        own = estimates(predictor, fit)[0]["offset"].recordings
+        held += sum(one.low <= 0 <= one.high for one in own.values())
+    assert LIKELY[0] <= held <= LIKELY[1]
+
+
+def test_a_single_recording_or_one_without_news_says_nothing_alone():
+    predictor, fit, _ = toy(0, 0.0)
+    predictor.traces = [SimpleNamespace(recording="all") for _ in range(RECORDINGS)]
+    assert estimates(predictor, fit)[0]["offset"].recordings == {}
+    predictor, fit, _ = toy(0, 0.0)
+    silent = np.where((predictor.trace == 1)[:, None], [0.0, 1, 1], 1) * fit.jacobian
+    muted = FittedModel(fit.model, fit.residual, silent, fit.coordinates)
+    offset, spring = estimates(predictor, muted)
+    assert list(offset["offset"].recordings) == ["0", "2", "3"]
+    assert list(spring["stiffness"].recordings) == ["0", "1", "2", "3"]
 
 
 @pytest.mark.parametrize("factor", [0.5, 2.0])

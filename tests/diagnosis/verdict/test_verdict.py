@@ -1,5 +1,6 @@
 import dataclasses
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -17,6 +18,7 @@ from diagnosis.verdict import (
     PlacedEffect,
     Recordings,
     Unexplained,
+    ValueRange,
     Verdict,
     When,
 )
@@ -81,7 +83,8 @@ def test_the_text_is_the_documented_one():
     plain = json.loads(FULL.to_json())
     assert plain["format"] == 1
     gap = {"value": 0.03, "low": 0.027, "high": 0.034, "unit": "rad"}
-    assert plain["effects"][0]["parameters"]["gap"] == gap
+    unchecked = {"nominal": None, "recordings": {}, "starts": None}
+    assert plain["effects"][0]["parameters"]["gap"] == gap | unchecked
     other = {"name": "coulomb_friction", "place": "knee"}
     assert plain["effects"][0]["confusable_with"] == [other]
     assert plain["mismatch"][0]["bursts"] == [[1, 2]]
@@ -91,10 +94,10 @@ def test_the_text_is_the_documented_one():
 
 def test_numbers_of_numpy_become_numbers():
     gap = Estimate(np.float32(0.5), np.float64(0.25), np.int64(1), "rad")
-    found = dataclasses.replace(PLAY, parameters={"gap": gap})
+    found = replace(PLAY, parameters={"gap": gap})
     plain = json.loads(Verdict("effects", (found,)).to_json())
     gap = {"value": 0.5, "low": 0.25, "high": 1.0, "unit": "rad"}
-    assert plain["effects"][0]["parameters"]["gap"] == gap
+    assert plain["effects"][0]["parameters"]["gap"].items() >= gap.items()
 
 
 def changed(path, value):
@@ -193,6 +196,37 @@ def test_every_field_is_documented():
     assert {"kind", "low", "wrong_place", "spread", "bursts"} <= names
     assert [name for name in sorted(names) if not documented(text, name)] == []
     assert not documented(text, "wrong_plaice")
+
+
+CHECKED = Estimate(
+    *(0.03, 0.027, 0.034, "rad"),
+    nominal=0.0,
+    recordings={"a": ValueRange(0.031, 0.028, 0.034), "b": ValueRange(0.02, 0.0, 0.05)},
+    starts=(0.0299, 0.0301),
+)
+
+
+def test_how_a_value_was_checked_is_kept():
+    verdict = Verdict(
+        "effects", (replace(PLAY, parameters={"gap": CHECKED}),), tried=93
+    )
+    assert Verdict.from_json(verdict.to_json()) == verdict
+    plain = json.loads(verdict.to_json())
+    own = plain["effects"][0]["parameters"]["gap"]
+    assert own["recordings"]["a"] == {"value": 0.031, "low": 0.028, "high": 0.034}
+    assert (own["nominal"], own["starts"]) == (0.0, [0.0299, 0.0301])
+    own["recordings"]["a"]["low"] = 0.04
+    with pytest.raises(BadValueError, match="must lie in its interval"):
+        Verdict.from_json(json.dumps(plain))
+
+
+def test_verdicts_of_before_values_were_checked_are_read():
+    verdict = Verdict("effects", effects=(PLAY,))
+    plain = json.loads(verdict.to_json())
+    del plain["tried"]
+    for key in ("nominal", "recordings", "starts"):
+        del plain["effects"][0]["parameters"]["gap"][key]
+    assert Verdict.from_json(json.dumps(plain)) == verdict
 
 
 def test_verdicts_of_before_values_were_shared_are_read():

@@ -7,6 +7,7 @@ import pytest
 from html_page import Page
 
 from diagnosis.seen import Curve, Delay, Seen, SeenJoint, Share
+from diagnosis.verdict import NextExperiment
 from experiments.diagnosis_report.figure_style import CORRECTED, slim
 from experiments.diagnosis_report.joints_shown import MOST_FIGURES
 from experiments.diagnosis_report.page import write_report
@@ -62,6 +63,23 @@ def test_the_section_shows_each_joint(tmp_path):
     ):
         assert words in said
     assert re.findall(r"url\((?!#)[^)]*\)|<script|<img", text) == []
+
+
+def test_each_joint_has_what_was_found_there(tmp_path):
+    at_knee = replace(made_up.ONE.effects[0], place="knee")
+    step = NextExperiment("ramps", "knee", "they tell friction from play.")
+    path = tmp_path / "report.html"
+    verdict = replace(made_up.ONE, effects=(at_knee,), next_experiment=step)
+    hip = replace(KNEE, joint="hip", loss_rms=0.1)
+    seen = replace(SEEN, joints=(KNEE, hip))
+    write_report(path, verdict, [], made_up.FACTS, seen)
+    text = html.unescape(path.read_text())
+    knee, rest = text.split("<h3>knee: loss torque")[1].split("<h3>hip: loss torque")
+    assert "knee has play of about 0.030 rad" in knee
+    assert "% sure" in knee
+    assert "What would tell: Record ramps of the joint knee" in knee
+    assert "No effect was found at this joint itself." in rest
+    assert "play of about" not in rest.split("</figure>")[0]
 
 
 def test_it_says_what_is_not_known(tmp_path):
