@@ -28,14 +28,15 @@ SLOW_KNEES := speed_limit@LKneePitch:speed=2.5 speed_limit@RKneePitch:speed=2.5
 DATA := data
 REAL := so101 emps go2
 
-.PHONY: help env walk test journeys lint results results-walk results-pictures results-nao \
+.PHONY: help env walk test slow-tests journeys lint results results-walk results-pictures results-nao \
 	$(STUDIES:%=results-%) \
 	results-terrain-stress results-humanoids results-diagnosed-gait \
 	results-diagnosis $(REAL:%=results-diagnosis-%) $(SETS:%=results-%) bench
 
 help:
 	@echo "make walk     tune a gait in simulation and try it in both worlds (into runs/)"
-	@echo "make test     run the tests, except for the journeys"
+	@echo "make test     run the tests that take seconds (below eight minutes on two cores)"
+	@echo "make slow-tests  run the others: whole diagnoses, searches and studies"
 	@echo "make journeys run what the pages tell people to type (about four minutes on two cores)"
 	@echo "make lint     check style, types and imports"
 	@echo "make results  write docs/results again (many hours; one page: make results-NAME)"
@@ -49,7 +50,11 @@ walk: $(READY)
 		$(if $(wildcard $(RUN)),$(RUN)-$(shell date +%Y-%m-%d-%H%M%S),$(RUN))
 
 test: $(READY)
-	$(PYTEST) --ignore tests/journeys
+	$(PYTEST) --ignore tests/journeys -m "not slow"
+
+# Whole diagnoses, searches and studies: what takes more than a few seconds.
+slow-tests: $(READY)
+	$(PYTEST) --ignore tests/journeys -m slow
 
 # What the pages tell people to type, each page from its top in one folder.
 journeys: $(READY)

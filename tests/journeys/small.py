@@ -26,6 +26,7 @@ DIAGNOSED = ("report.html", "diagnosis.json", "audit.json", "overlay.rrd")
 
 
 TESTS = NotRun("minutes, beside this test", "make -n test", says="--ignore")
+SLOW_TESTS = NotRun("a quarter of an hour", "make -n slow-tests", says="-m slow")
 IT_RUNS_THIS = NotRun("it runs this test", "make -n journeys", says="tests/journeys")
 
 REAL = NotRun(

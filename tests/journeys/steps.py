@@ -14,6 +14,7 @@ from small import (
     IT_RUNS_THIS,
     SEARCH,
     SHORT,
+    SLOW_TESTS,
     SMALL_STUDY,
     TESTS,
     TUNED,
@@ -26,6 +27,7 @@ JOURNEYS: dict[str, dict[str, Step]] = RECORDING_STEPS | {
     "README.md": {
         "make walk": make("walk", "six minutes; optimize-gait below is the same"),
         "make test": TESTS,
+        "make slow-tests": SLOW_TESTS,
         "make journeys": IT_RUNS_THIS,
         "groundwalk optimize-gait --population 150 --generations 15 --seed 1 "
         "--out runs/mine": Run(SEARCH, writes=below("runs/mine", TUNED), says="sim"),
@@ -101,6 +103,7 @@ JOURNEYS: dict[str, dict[str, Step]] = RECORDING_STEPS | {
     "architecture.md": {
         "make lint": NotRun("a minute, beside the tests", "make -n lint", says="ruff"),
         "make test": TESTS,
+        "make slow-tests": SLOW_TESTS,
         "make journeys": IT_RUNS_THIS,
         "python docs/draw_rooms.py docs/architecture.png": Run(
             "rooms.png", without=("docs/architecture.png",), writes=("rooms.png",)
