@@ -12,6 +12,7 @@ import tyro
 from experiments.command_line import run_verb
 from experiments.reports.tables import print_table
 from experiments.runs.folder import check_new
+from experiments.runs.load_options import known_loads
 from experiments.runs.servo_options import servo_gains
 from groundwalk.errors import (
     BadRecordingError,
@@ -159,7 +160,7 @@ class Convert:
     @property
     def loads(self) -> dict[str, Load]:
         """The known loads by the body's name."""
-        return dict(map(_load, _flat(self.load)))
+        return known_loads(_flat(self.load))
 
     @property
     def new_names(self) -> dict[str, str]:
@@ -303,25 +304,6 @@ def _paths(config: Convert, found: Sequence[ForeignRecording]) -> list[Path]:
     if twice:
         raise BadValueError(f"two recordings would be called {twice[0]}")
     return [config.out / f"{name}.{config.format}" for name in names]
-
-
-def _load(text: str) -> tuple[str, Load]:
-    """A load and the name of its body, from a text like lever=1.02@0,0,-0.15."""
-    body, _, said = text.partition("=")
-    mass, _, place = said.partition("@")
-    try:
-        x, y, z = map(float, place.split(","))
-        kg = float(mass)
-    except ValueError:
-        body = ""
-    if not body:
-        raise BadValueError(
-            f"load is {text!r}; it must be BODY=KG@X,Y,Z, like lever=1.02@0,0,-0.15"
-        )
-    try:
-        return body, Load(kg, (x, y, z))
-    except BadRecordingError as error:
-        raise BadValueError(f"load is {text!r}: {error}") from None
 
 
 def _flat(words: Iterable[Iterable[str]]) -> tuple[str, ...]:

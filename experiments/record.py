@@ -15,12 +15,13 @@ from experiments.concealed.motion import FLOATING_STEP_S, STEP_S, motion_feed
 from experiments.motions import MOTIONS
 from experiments.planned_files import read_planned, write_planned
 from experiments.runs.folder import check_new
+from experiments.runs.load_options import known_loads
 from experiments.runs.options import check_at_least
 from experiments.runs.servo_options import servo_gains
 from groundwalk.arrays import FloatArray
 from groundwalk.errors import BadValueError, GroundwalkError
 from groundwalk.files import write_text
-from worlds import Recording
+from worlds import Load, Recording
 from worlds.hidden.effects import Hidden
 from worlds.hidden.plant import HiddenPlant, hidden_plant
 from worlds.hidden.recorded import HiddenSensors, hidden_recording
@@ -60,6 +61,8 @@ class Record:
       base: fixed or floating; by default the one that the motion needs.
       hidden: physics that the model lacks, such as backlash@LKneePitch:gap=0.02 or
         coulomb_friction@LKneePitch:torque=0.2; `groundwalk list effects` shows all.
+      load: a known mass [kg] that a body carries, and where in the body's frame it is
+        fixed [m], such as link=1.02@0,0,-0.15; the recording states it.
       duration: length of the recording [s].
       seed: every random number follows from it.
       play: a CSV file of commands to play instead of `motion`, as --plan and
@@ -83,6 +86,7 @@ class Record:
     motion: Motion = "multisine"
     base: Literal["fixed", "floating"] | None = None
     hidden: tuple[str, ...] = ()
+    load: tuple[str, ...] = ()
     duration: float = 10.0
     seed: int = 1
     play: Path | None = None
@@ -120,7 +124,12 @@ class Record:
             needs = "floating" if self.on_feet else "fixed"
             raise BadValueError(f"motion {self.motion} needs a {needs} base")
         self.effects()
-        self.plant()
+        self.plant().with_loads(self.loads)
+
+    @property
+    def loads(self) -> dict[str, Load]:
+        """The known loads by the body's name."""
+        return known_loads(self.load)
 
     @property
     def on_feet(self) -> bool:
@@ -217,8 +226,9 @@ def make_recording(config: Record) -> Recording:
         _JITTER_S,
         np.random.default_rng(of_clock),
     )
+    loaded = plant.with_loads(config.loads)
     run = run_hidden(
-        plant, effects, ENGINES[config.world], clock, feed, start_rad, of_ground
+        loaded, effects, ENGINES[config.world], clock, feed, start_rad, of_ground
     )
     if not run.ok:
         raise GroundwalkError(
@@ -232,6 +242,7 @@ def make_recording(config: Record) -> Recording:
         base="floating" if plant.floating else "fixed",
         source=f"groundwalk record: {played}, seed {config.seed}",
         servo=plant.servo,
+        loads=config.loads,
         world=config.world,
     )
     recording = hidden_recording(

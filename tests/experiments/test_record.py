@@ -1,9 +1,13 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
+from diagnosis.residuals.predictor import Predictor
+from diagnosis.traces.read import read_traces
 from experiments.record import Record, main
-from groundwalk.errors import BadValueError, GroundwalkError
-from worlds import read_recording
+from groundwalk.errors import BadValueError, GroundwalkError, UnknownNameError
+from worlds import Load, read_recording
 
 
 def record(path, **options):
@@ -31,6 +35,35 @@ def test_hidden_friction_shows_and_the_same_seed_gives_the_same_numbers(tmp_path
     )
     assert np.array_equal(rough, same)
     assert np.std(rough - smooth) > 0.005
+
+
+@pytest.mark.parametrize("world", ["sim", "real"])
+def test_a_load_moves_with_the_robot_and_the_recording_states_it(tmp_path, world):
+    load = ("link=0.4@0,0,-0.3",)
+    free, loaded = (
+        record(tmp_path / f"{name}.parquet", load=some, world=world)
+        for name, some in (("free", ()), ("loaded", load))
+    )
+    assert (free.metadata.loads, loaded.metadata.loads) == (
+        {}, {"link": Load(0.4, (0.0, 0.0, -0.3))},
+    )  # fmt: skip
+    moved = [one.joint_values("position", ["swing"]) for one in (free, loaded)]
+    assert np.std(moved[0] - moved[1]) > 0.01
+    paths = [tmp_path / f"{name}.parquet" for name in ("free", "loaded")]
+    plant, traces = read_traces(paths, tmp_path / free.metadata.robot)
+
+    def off(some):
+        predictor = Predictor(plant, some)
+        predictor.correct()  # how coarse the steps are is not the model's fault
+        (left,) = predictor.residuals([()])
+        return np.sqrt(np.mean(left**2))
+
+    assert off(traces) < 1.3
+    assert off([replace(one, loads={}) for one in traces]) > 5
+    with pytest.raises(UnknownNameError, match="did you mean 'link'"):
+        Record(out=tmp_path / "x.csv", robot="pendulum", load=("lonk=1@0,0,0",))
+    with pytest.raises(BadValueError, match="names 'link' twice"):
+        Record(out=tmp_path / "x.csv", robot="pendulum", load=load * 2)
 
 
 def test_both_worlds_record_the_same_robot(tmp_path):

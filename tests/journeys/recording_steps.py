@@ -136,6 +136,10 @@ RECORDING_STEPS: dict[str, dict[str, Step]] = {
         ),
     },
     "recordings.md": {
+        "groundwalk record --robot pendulum --load link=0.8@0,0,-0.3 --hidden "
+        "gear_friction@swing:coulomb_torque=0.05,share=0.1 --out heavy.parquet": Run(
+            writes=("heavy.parquet",), says="ticks of pendulum"
+        ),
         "groundwalk convert log.csv --out swing.parquet": NotRun(
             "it shows what it makes of a table, and asks",
             "groundwalk convert log.csv --out swing.parquet",

@@ -5,7 +5,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from importlib.metadata import PackageNotFoundError, distribution
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -15,6 +15,7 @@ from groundwalk.errors import BadValueError, UnknownNameError
 from robots.description import Description
 from robots.engine_models.mjcf import ROOT_JOINT, mujoco_spec
 from robots.engine_models.urdf import model_urdf
+from worlds.recordings.load import Load
 from worlds.recordings.metadata import ServoGains
 
 if TYPE_CHECKING:
@@ -117,6 +118,27 @@ class HiddenPlant:
 
         return replace(self, make_spec=make)
 
+    def with_loads(self, loads: Mapping[str, Load]) -> "HiddenPlant":
+        """A copy that carries loads, by the name of the body they are fixed to.
+
+        Raises:
+          UnknownNameError: the robot has no such body.
+        """
+
+        def make() -> "mujoco.MjSpec":
+            spec = self.make_spec()
+            model = spec.compile()
+            for name, load in loads.items():
+                _carry(spec.body(name), model.body(name), load)
+            return spec
+
+        bare = self.make_spec()
+        known = [body.name for body in bare.bodies if body.name != "world"]
+        for name in loads:
+            if name not in known:
+                raise UnknownNameError(f"body of {self.name}", name, known)
+        return replace(self, make_spec=make) if loads else self
+
     def with_gains(self, stiffness: float, damping: float = 1.0) -> "HiddenPlant":
         """A copy of this robot with all kp and kd multiplied, the back-EMF kept."""
         return replace(
@@ -124,6 +146,30 @@ class HiddenPlant:
             kp_nm_rad=self.kp_nm_rad * stiffness,
             kd_nm_s_rad=self.kd_nm_s_rad * damping,
         )
+
+
+def _carry(body: "mujoco.MjsBody", bare: Any, load: Load) -> None:
+    """Give a specification's body the inertia that it has with a load.
+
+    `bare` is the same body of the compiled model. Inertias of both are about their
+    common centre of mass (the parallel axis theorem).
+    """
+    import mujoco
+
+    turn = np.empty(9)
+    mujoco.mju_quat2Mat(turn, bare.iquat)
+    axes = turn.reshape(3, 3)
+    inertia = axes @ np.diag(bare.inertia) @ axes.T
+    masses = np.array([bare.mass[0], load.mass])
+    places = np.array([bare.ipos, load.at])
+    centre = masses @ places / masses.sum()
+    for mass, away in zip(masses, places - centre, strict=True):
+        inertia = inertia + mass * (away @ away * np.eye(3) - np.outer(away, away))
+    body.explicitinertial = True
+    body.mass, body.ipos = masses.sum(), centre
+    body.inertia, body.iquat = [0, 0, 0], [1, 0, 0, 0]
+    xx, yy, zz = np.diag(inertia)
+    body.fullinertia = [xx, yy, zz, inertia[0, 1], inertia[0, 2], inertia[1, 2]]
 
 
 def hidden_plant(name: str, floating: bool = False) -> HiddenPlant:
