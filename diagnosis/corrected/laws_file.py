@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from diagnosis.corrected.laws.commands import LateCommand, SpeedLimit
+from diagnosis.corrected.laws.controller import Controller
 from diagnosis.corrected.laws.driver import CorrectedLaws
 from diagnosis.corrected.laws.dry_friction import DryFriction
 from diagnosis.corrected.laws.elastic import ElasticDrive
@@ -29,10 +30,12 @@ from diagnosis.effects.ripple import Cogging
 from diagnosis.effects.variants import Variants
 from diagnosis.plant.plant import Plant
 from diagnosis.plant.servo import Servo
+from diagnosis.replay.controllers import CONTROLLED, derivative_lag_s
 from diagnosis.replay.dry_friction import VARYING
 from diagnosis.replay.servos import servo_laws
 from diagnosis.residuals.predictor import Model
 from diagnosis.residuals.replays import variants_of
+from groundwalk.arrays import FloatArray
 
 CORRECTED_LAWS = "corrected_laws.py"
 
@@ -44,8 +47,9 @@ NAMES: Mapping[type[Law], str] = {
     SpeedLimit: "SPEED_LIMITS",
     WeakServo: "WEAK_SERVOS",
     DryFriction: "DRY_FRICTION",
-    Play: "PLAY",
     Ripple: "RIPPLES",
+    Controller: "CONTROLLERS",
+    Play: "PLAY",
     Presliding: "PRESLIDING",
     ElasticDrive: "ELASTIC_DRIVES",
     Saturation: "SATURATION",
@@ -70,7 +74,7 @@ FRICTION: Mapping[str, str] = {
 }
 """Arguments of the law of dry friction, by the attributes of `Joints` they are."""
 
-ON_COMMANDS = (SpeedLimit, Play, ElasticDrive, Saturation)
+ON_COMMANDS = (SpeedLimit, Controller, Play, ElasticDrive, Saturation)
 """Laws that need a command when it is due, so that its delay must come before them."""
 
 _IMPORTS = """from collections import deque
@@ -179,6 +183,8 @@ def _each(
         rotor = float(armature[0, plant.dofs[column]])
         late_s = float(variants.late_s[0, column])
         laws = list(_of_joint(own, rotor, max(late_s, 0.0)))
+        gains = float(law["kp"][0, column]), float(law["kd"][0, column])
+        laws += _controllers(own, lag_s=derivative_lag_s(*map(np.array, gains)))
         if saturates[column] and np.isinf(own["spring_nm_rad"]):
             laws.append((Saturation, {}))
         for kind, values in laws:
@@ -210,6 +216,15 @@ def _ripples(variants: Variants) -> Iterator[tuple[type[Law], dict[str, Any]]]:
             own = dict(zip(names, map(float, torques[0, column]), strict=True))
             own["offset_rad"] = float(offset[column])
             yield Ripple, {"joint": variants.plant.joints[column], **own}
+
+
+def _controllers(
+    own: Mapping[str, float], lag_s: FloatArray
+) -> Iterator[tuple[type[Law], dict[str, float]]]:
+    """What the servo at one joint does with its error, if anything is new."""
+    if any(own[name] for name in CONTROLLED):
+        values = {name: own[name] for name in CONTROLLED}
+        yield Controller, {**values, "lag_s": float(lag_s)}
 
 
 def _of_joint(

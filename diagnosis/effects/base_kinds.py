@@ -11,7 +11,7 @@ from diagnosis.effects.parts import Parameter, PlaceKind
 from diagnosis.effects.places import joints_where
 from diagnosis.effects.variants import Variants
 from diagnosis.plant.plant import Plant
-from diagnosis.traces.trace import Trace
+from diagnosis.traces.trace import Trace, asked
 from groundwalk.arrays import FloatArray
 
 
@@ -32,6 +32,20 @@ class ServoEffect(JointEffect):
         """Names of joints whose servo has a stiffness above 0 in any recording."""
         servos = [trace.servo for trace in traces] or [plant.servo]
         return joints_where(plant, [servo.kp_nm_rad > 0 for servo in servos])
+
+
+class CommandedServo(ServoEffect):
+    """An effect that changes how servos follow position commands."""
+
+    def places(self, plant: Plant, traces: Sequence[Trace]) -> tuple[str, ...]:
+        """Names of joints with a servo, if a recording has position commands.
+
+        None if only the torque is compared for which servos ask: any motion that does
+        not follow its commands would look like such an effect.
+        """
+        if asked(traces) or all(trace.command_rad is None for trace in traces):
+            return ()
+        return super().places(plant, traces)
 
 
 class BodyEffect(Effect):

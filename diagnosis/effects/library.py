@@ -7,6 +7,7 @@ from types import MappingProxyType
 
 from diagnosis.effects import (
     bodies,
+    controllers,
     friction,
     gear_friction,
     gears,
@@ -47,6 +48,9 @@ BUILT_IN: Mapping[str, Effect] = MappingProxyType(
             servos.SpeedLimit(),
             servos.ServoGain(),
             servos.ServoDamping(),
+            controllers.IntegralTerm(),
+            controllers.DeadBand(),
+            controllers.ErrorDerivative(),
             joints.Armature(),
             bodies.PayloadMass(),
             bodies.ComOffset(),

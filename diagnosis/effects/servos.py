@@ -5,7 +5,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from diagnosis.effects.base_kinds import JointEffect, NumberEffect, ServoEffect
+from diagnosis.effects.base_kinds import (
+    CommandedServo,
+    JointEffect,
+    NumberEffect,
+    ServoEffect,
+)
 from diagnosis.effects.effect import LIMITS
 from diagnosis.effects.parts import (
     EARLIEST_S,
@@ -19,7 +24,7 @@ from diagnosis.effects.places import driven_joints, joints_where
 from diagnosis.effects.scales import speed_rad_s, torque_nm
 from diagnosis.effects.variants import Variants
 from diagnosis.plant.plant import Plant
-from diagnosis.traces.trace import Trace, asked
+from diagnosis.traces.trace import Trace
 from diagnosis.traces.usage import Usage
 from diagnosis.verdict import PlacedEffect, When
 from groundwalk.arrays import FloatArray
@@ -231,7 +236,7 @@ class TorqueLimit(NumberEffect, JointEffect):
         return [replace(placed, values=(limit,)) for limit in limits]
 
 
-class SpeedLimit(NumberEffect, ServoEffect):
+class SpeedLimit(NumberEffect, CommandedServo):
     """A set-point that follows the command no faster than a limit.
 
     Source: rate limiter, Astrom and Hagglund 2006, "Advanced PID control";
@@ -250,16 +255,6 @@ class SpeedLimit(NumberEffect, ServoEffect):
         "A setting in the servo's firmware that slows its target down.",
         "Look at the servo's setting for its moving speed or profile.",
     )
-
-    def places(self, plant: Plant, traces: Sequence[Trace]) -> tuple[str, ...]:
-        """Names of joints with a servo, if a recording has position commands.
-
-        None if only the torque is compared for which servos ask: any motion that does
-        not follow its commands would look like one with slow targets.
-        """
-        if asked(traces) or all(trace.command_rad is None for trace in traces):
-            return ()
-        return super().places(plant, traces)
 
     def parameters(self, plant: Plant, place: str) -> tuple[Parameter, ...]:
         """The limit [rad/s]: 1 % to 4 times the motor's no-load speed."""

@@ -38,6 +38,10 @@ class Joints:
         `off_end_s`, times of the recording.
       max_torque_nm: torque limit, where below the nominal servo's.
       setpoint_speed_rad_s: highest speed of the servo's set-point.
+      integral_1_s: integral gain of the servo as a multiple of its stiffness.
+      dead_band_rad: error below which the servo's stiffness does nothing.
+      rate_share: share of the set-point's rate that the servo takes from the speed that
+        it damps, see `replay.controllers`.
       gap_rad: total play between servo and joint; no torque passes within it.
       compliance_rad_nm: by how much gears with play yield per torque that passes.
       offset_rad: measured minus true position; the servo acts on the measured one.
@@ -66,6 +70,9 @@ class Joints:
     off_end_s: FloatArray
     max_torque_nm: FloatArray
     setpoint_speed_rad_s: FloatArray
+    integral_1_s: FloatArray
+    dead_band_rad: FloatArray
+    rate_share: FloatArray
     gap_rad: FloatArray
     compliance_rad_nm: FloatArray
     offset_rad: FloatArray

@@ -9,6 +9,8 @@ from diagnosis.effects.variants import Variants
 from diagnosis.plant.loads import Inertias, carry
 from diagnosis.plant.plant import Plant
 from diagnosis.plant.servo import Servo
+from diagnosis.replay.controllers import CONTROLLED, BatchControllers, HeldTorques
+from diagnosis.replay.dry_friction import depends_on
 from diagnosis.replay.outside import OutsideForces
 from diagnosis.replay.presliding import BatchPresliding
 from diagnosis.replay.servos import (
@@ -72,6 +74,10 @@ class BatchLaws:
         self._stiff = np.isinf(joints["spring_nm_rad"])
         loose = bool(joints["gap_rad"].any())
         self._gaps = BatchGaps(joints, self._servos.law, step_s) if loose else None
+        self._controllers: BatchControllers | None = None
+        if depends_on(joints, CONTROLLED):
+            self._controllers = BatchControllers(joints, self._servos.law, step_s)
+            self._held = HeldTorques(plant.model, batch)
         bends = bool(joints["slip_nm"].any())
         self._presliding = BatchPresliding(joints, step_s) if bends else None
         self._torques = [
@@ -90,12 +96,14 @@ class BatchLaws:
         self,
         asked_rad: FloatArray | None = None,
         before_rad: Sequence[FloatArray | None] = (),
+        rising: Sequence[FloatArray | None] = (),
     ) -> None:
         """Begin, or begin again, in the state that the simulations are in.
 
         `asked_rad` are the (n R, j) position targets so far; None for those of the
         first step. `before_rad` has for each run its joints' motion (rows, j) up to its
-        start, which friction remembers; None where nothing is known.
+        start, which friction remembers, and `rising` their accelerations (j,) [rad/s^2]
+        there, which tell the torques of integral terms; None where nothing is known.
         """
         self._setpoint = None
         if asked_rad is not None:
@@ -104,6 +112,9 @@ class BatchLaws:
             self._gaps.begin()
         if self._presliding is not None:
             self._presliding.begin(before_rad)
+        if self._controllers is not None:
+            needed = self._start_nm(rising) if self._controllers.remembers else None
+            self._controllers.begin(needed)
         self.outside.begin()
         is_first = self._elastic is None
         if np.isfinite(self.joints["spring_nm_rad"]).any():
@@ -132,10 +143,16 @@ class BatchLaws:
         if self._slews:
             slewed_rad = self._slewed(mean_rad, ends or (mean_rad, mean_rad))
             asked_rad = np.where(self._slow, slewed_rad, asked_rad)
+            mean_rad = np.where(self._slow, slewed_rad, mean_rad)
         if self._servos.fades:
             self._servos.fade(time_s)
         if self._friction.varies:
             self._rub(velocity, 0.0)
+        if self._controllers is not None:
+            seen = self.encoder_rad(), self.encoder_rad_s()
+            if self._gaps is not None:
+                seen = self._gaps.seen(*seen)
+            asked_rad = self._controllers.through(asked_rad, mean_rad, *seen)
         if self._gaps is not None:
             asked_rad, free_nm = self._gaps.through(asked_rad, position, velocity)
             self._applied[:, self._dofs] = free_nm
@@ -193,6 +210,23 @@ class BatchLaws:
         """(n R, j) speeds [rad/s] of joints or, if elastic, of motors."""
         velocity = self._qvel[:, self._dofs]
         return velocity if self._elastic is None else self._elastic.seen_speed(velocity)
+
+    def _start_nm(self, rising: Sequence[FloatArray | None]) -> FloatArray:
+        """(n R, j) torques [N m] that servos give at the start, see `begin`.
+
+        What drag, pushes, presliding and friction by load add is left out.
+        """
+        position, velocity = self.joint_state()
+        every = np.zeros_like(self._qvel)
+        if rising:
+            steady = np.zeros(velocity.shape[1])
+            own = [steady if one is None else one for one in rising]
+            every[:, self._dofs] = np.tile(own, (len(position) // len(own), 1))
+        needed = self._held.at(every)[:, self._dofs]
+        start = np.zeros((len(position), 1))
+        for effect, values in self._torques:
+            needed = needed - effect.torque_nm(values, position, velocity, start)
+        return np.asarray(needed + self._servos.law["kd"] * velocity)
 
     def _rub(self, velocity: FloatArray, added_nm: FloatArray | float) -> None:
         """Set dry friction by joint speed and by the torque through the gear.

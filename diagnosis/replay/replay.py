@@ -102,7 +102,10 @@ class ReplayBatch:
         loads = [run.trace.loads for run in runs]
         self.laws = BatchLaws(self._batch, variants, servos, step_s, loads)
         self._start(runs, variants)
-        self.laws.begin(before_rad=[run.before_rad for run in runs])
+        self.laws.begin(
+            before_rad=[run.before_rad for run in runs],
+            rising=[run.acceleration_rad_s2 for run in runs],
+        )
 
     def step(self) -> None:
         """Take one step of physics; a simulation that diverges gets NaN positions."""

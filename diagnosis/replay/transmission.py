@@ -130,11 +130,24 @@ class BatchGaps:
         self._yields = joints["compliance_rad_nm"][self._at]
         self._law, self._step_s = law, step_s
         self._motor_rad: FloatArray | None = None
-        self._wound_rad = np.zeros_like(self._half)
+        self._wound_rad = self._motor_rad_s = np.zeros_like(self._half)
 
     def begin(self) -> None:
         """Forget the motors' angles; they start as near their targets as gaps allow."""
         self._motor_rad = None
+
+    def seen(
+        self, position: FloatArray, velocity: FloatArray
+    ) -> tuple[FloatArray, FloatArray]:
+        """(rows, j) angles [rad] that servos control, and their speeds [rad/s].
+
+        Those of motors at joints with a gap, after the first step; else the joints'.
+        """
+        if self._motor_rad is None:
+            return position, velocity
+        angles, speeds = position.copy(), velocity.copy()
+        angles[self._at], speeds[self._at] = self._motor_rad, self._motor_rad_s
+        return angles, speeds
 
     def through(
         self, asked_rad: FloatArray, position: FloatArray, velocity: FloatArray
@@ -158,6 +171,7 @@ class BatchGaps:
         driven = law["kp"] * (asked - edge) - drag * (edge - self._motor_rad)
         wound = np.where(apart, 0.0, self._wound(law, drag, driven))
         winding = drag * (wound - self._wound_rad) / np.maximum(law["kp"], LEAST_KP)
+        self._motor_rad_s = (edge + wound - self._motor_rad) / self._step_s
         self._motor_rad, self._wound_rad = edge + wound, wound
         targets, free_nm = asked_rad.copy(), np.zeros_like(asked_rad)
         arrives = np.where(apart, 0.0, asked - self._motor_rad - winding)

@@ -38,13 +38,15 @@ class Limb:
     def run(self, run: Run) -> Run:
         """The part of a window of the whole robot that belongs to this limb."""
         columns = list(self.columns)
+        before, rising = run.before_rad, run.acceleration_rad_s2
         return replace(
             run,
             trace=run.trace.of(columns),
             position_rad=run.position_rad[columns],
             velocity_rad_s=run.velocity_rad_s[columns],
             whole=run.whole and run.whole.of(columns),
-            before_rad=None if run.before_rad is None else run.before_rad[:, columns],
+            before_rad=None if before is None else before[:, columns],
+            acceleration_rad_s2=None if rising is None else rising[columns],
         )
 
     def channels(self, whole: Channels) -> tuple[Channels, list[int]]:

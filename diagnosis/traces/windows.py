@@ -49,6 +49,9 @@ class Run:
         take effect late.
       before_rad: (rows, j) smoothed positions just before the start and at it, which
         friction remembers; None if nothing was recorded before.
+      acceleration_rad_s2: (j,) smoothed accelerations at the start, which tell the
+        torques there; None if nothing was recorded before: then the joints are taken to
+        move steadily.
     """
 
     trace: Trace
@@ -57,6 +60,7 @@ class Run:
     base: FloatArray | None = None
     whole: Trace | None = None
     before_rad: FloatArray | None = None
+    acceleration_rad_s2: FloatArray | None = None
 
     @classmethod
     def of(cls, trace: Trace) -> "Run":
@@ -75,6 +79,7 @@ class Run:
             smoothed.rate[first],
             whole=whole,
             before_rad=_before(smoothed.value, first),
+            acceleration_rad_s2=smoothed.acceleration[first] if first else None,
         )
 
 
@@ -119,6 +124,7 @@ def runs_of(plant: Plant, trace: Trace, least_s: float = 0.0) -> list[Run]:
             None if base is None else base[first],
             led,
             _before(smoothed.value, more + int(first)),
+            smoothed.acceleration[more + int(first)] if more + first else None,
         )
         for first, last in zip(starts, ends, strict=True)
     ]

@@ -9,6 +9,10 @@ import numpy as np
 from groundwalk.arrays import FloatArray
 from worlds.hidden.plant import HiddenPlant
 
+LAG = 0.1
+"""Lag of a target's rate as a share of kd / kp: controllers have a half to a twentieth
+(Astrom and Hagglund 2006, "Advanced PID control", chapter 3)."""
+
 
 def servo_torque_nm(
     gains: tuple[FloatArray, FloatArray, FloatArray, FloatArray],
@@ -41,6 +45,8 @@ class Servos:
         reading is not.
       integral_1_s: integral gain as a multiple of kp, see `controlled`.
       dead_band_rad: error below which the servo gives no torque, see `controlled`.
+      target_rate_share: share of the target's rate that damping takes from the joint's
+        speed, see `controlled`.
       ripples: (joint, amplitude, per turn, phase) of periodic encoder errors, amplitude
         sin(per turn q + phase) [rad] at joint angle q, which the servo acts on.
       leaks: (to, from, share) for crosstalk between the commands of two joints.
@@ -59,11 +65,13 @@ class Servos:
         self.late_s = np.zeros(j)
         self.integral_1_s = np.zeros(j)
         self.dead_band_rad = np.zeros(j)
+        self.target_rate_share = np.zeros(j)
         self.ripples: list[tuple[int, float, float, float]] = []
         self.leaks: list[tuple[int, int, float]] = []
         self._step_s = step_s
         self._target: FloatArray | None = None
         self._summed_rad = np.zeros(j)
+        self._lagging: FloatArray | None = None
 
     @cached_property
     def _fades(self) -> bool:
@@ -74,13 +82,17 @@ class Servos:
         return bool(self.integral_1_s.any() or self.dead_band_rad.any())
 
     @cached_property
+    def _leads(self) -> bool:
+        return bool(self.target_rate_share.any())
+
+    @cached_property
     def _slews(self) -> bool:
         return bool(np.isfinite(self.max_speed_rad_s).any())
 
     @cached_property
     def remember(self) -> bool:
         """Whether torques depend on earlier set-points, not on the present one only."""
-        return self._controls or self._slews
+        return self._controls or self._slews or self._leads
 
     def gains(
         self, time_s: float
@@ -110,20 +122,36 @@ class Servos:
 
         With error e = target - position, both (j,) [rad], the controller's torque is
         kp (e + integral_1_s int e dt), the integral's part at most the servo's largest
-        torque; it is 0 where the sum in brackets is below the dead band. The position
+        torque; it is 0 where the sum in brackets is below the dead band. What damping
+        takes of the target's rate is added, see `_lead`. The position
         is the true one, from which that with an encoder's ripple follows.
         """
         if self.ripples:  # reading too much acts as a target that is too low
             target = target + (position_rad - self.rippled(position_rad))
+        lead = self._lead(target) if self._leads else 0.0
         if not self._controls:
-            return target
+            return target + lead
         error = target - position_rad
         most = self.max_torque_nm / np.maximum(self.kp_nm_rad, 1e-9)
         more = self._summed_rad + self.integral_1_s * error * self._step_s
         self._summed_rad = np.clip(more, -most, most)
         error = error + self._summed_rad
         inside = np.abs(error) < self.dead_band_rad
-        return np.asarray(position_rad + np.where(inside, 0.0, error))
+        return np.asarray(position_rad + np.where(inside, 0.0, error) + lead)
+
+    def _lead(self, target: FloatArray) -> FloatArray:
+        """(j,) angles [rad] by which set-points lead (j,) targets, by their rates.
+
+        The damping's torque is kd (share dc/dt - speed), c being the target behind a
+        first-order lag of a tenth of kd / kp. The lag is solved for the step's end.
+        """
+        if self._lagging is None:
+            self._lagging = target
+        ahead_s = self.kd_nm_s_rad / np.maximum(self.kp_nm_rad, 1e-9)
+        weight = self._step_s / (LAG * ahead_s + self._step_s)
+        change = weight * (target - self._lagging)
+        self._lagging = self._lagging + change
+        return self.target_rate_share * ahead_s * change / self._step_s
 
     def rippled(self, angle_rad: FloatArray) -> FloatArray:
         """(j,) angles [rad] with the encoders' periodic errors added."""

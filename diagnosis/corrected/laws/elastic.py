@@ -77,6 +77,7 @@ class ElasticDrive(Law):
     def _note(self) -> None:
         """Keep the motor's angles and speeds for as long as the encoder is late."""
         assert self.angle is not None
+        self.joint.motor = self.angle, self.speed
         self.seen.append((self.angle, self.speed))
         steps = int(self.delay_s / self.seconds) + 2
         while len(self.seen) < steps:

@@ -35,8 +35,10 @@ class Play(Law):
         low, high = angle - self.gap_rad / 2, angle + self.gap_rad / 2
         if self.motor is None:
             self.motor = min(max(target, low), high)
-        free = self.motor + self._way(target - self.motor, step.seconds)
+        before = self.motor
+        free = before + self._way(target - before, step.seconds)
         self.motor = min(max(free, low), high)
+        joint.motor = self.motor, (self.motor - before) / step.seconds
         if low < free < high:  # nothing touches: the servo must not brake the joint
             step.targets[joint.name] = angle
             servo_nm = min(max(joint.kd * speed, -joint.limit), joint.limit)

@@ -23,6 +23,8 @@ class Joint:
       back_emf: the servo's damping outside of the torque limit [N m s/rad], which
         corrected.xml has in the joint's damping.
       is_spring: whether the actuator stands for a spring instead of the servo.
+      motor: angle [rad] and speed [rad/s] that the servo controls, after the last step;
+        None if they are the joint's.
     """
 
     name: str
@@ -35,6 +37,7 @@ class Joint:
     constant: float
     back_emf: float
     is_spring: bool = False
+    motor: tuple[float, float] | None = None
 
     @classmethod
     def of(cls, model: mujoco.MjModel, name: str, back_emf: float) -> "Joint":

@@ -68,6 +68,7 @@ IN_THE_AIR = [
     [("command_latency", "commands", 0.0133)],
     [("late_reading", "LKneePitch", 0.0133), ("sensor_delay", "encoders", 0.005)],
     [("presliding", "LElbowRoll", 0.2, 0.03), ("presliding", "LKneePitch", 0.5, 0.01)],
+    [("integral_term", "LKneePitch", 0.5), ("dead_band", "LShoulderPitch", 0.02)],
     [("stribeck_friction", "LElbowRoll", 0.1, 0.2, 0.1)],
     [("load_friction", "LShoulderPitch", 0.4), ("coulomb_friction", "RHipPitch", 0.5)],
     [("joint_elasticity", "LKneePitch", 40.0, 0.1), ("armature", "LKneePitch", 0.02)],

@@ -47,6 +47,9 @@ ALONE = [
     ("drag", "RForeArm", 5.0),
     ("presliding", KNEE, 0.5, 0.05),
     ("cogging", KNEE, 0.3, 12.0, 0.5),
+    ("integral_term", ARM, 0.3),
+    ("dead_band", KNEE, 0.02),
+    ("error_derivative", KNEE, 0.7),
 ]
 """Each effect that moves a robot and that MuJoCo lacks."""
 
@@ -63,6 +66,18 @@ TOGETHER = {
     "presliding and a ripple behind a wrong zero": [
         ("presliding", KNEE, 0.3, 0.02), ("cogging", KNEE, 0.3, 12.0, 0.5),
         ("encoder_offset", KNEE, 0.1), ("coulomb_friction", ARM, 0.1),
+    ],
+    "a controller behind a late and slow command": [
+        LATE, ("speed_limit", KNEE, 0.8), ("dead_band", KNEE, 0.02),
+        ("integral_term", ARM, 0.3), ("torque_offset", ARM, 0.1),
+        ("cogging", ARM, 0.3, 12.0, 0.5), ("encoder_offset", ARM, 0.1),
+    ],
+    "a controller and play": [
+        PLAY, ("integral_term", KNEE, 0.5), ("dead_band", KNEE, 0.01),
+    ],
+    "a controller and a spring": [
+        *SPRING, ("integral_term", KNEE, 0.5), ("servo_fade", KNEE, 0.05),
+        ("coulomb_friction", KNEE, 0.2), ("torque_limit", KNEE, 0.8),
     ],
     "weak, with play": [("torque_limit", KNEE, 0.8), PLAY],
     "weak and elastic": [("torque_limit", KNEE, 0.8), *SPRING],
@@ -82,7 +97,11 @@ def nao():
 
 @pytest.mark.parametrize("one", ALONE, ids=lambda one: one[0])
 def test_an_effect_alone(nao, one):
-    with_laws, native = compared(nao, model_of(one), commanded(nao), 1e-3)
+    """Servos of the robot have no damping of their own, which one effect needs."""
+    own = nao.servo
+    if one[0] == "error_derivative":
+        own = replace(own, kd_nm_s_rad=np.full_like(own.kp_nm_rad, 0.5))
+    with_laws, native = compared(nao, model_of(one), commanded(nao, servo=own), 1e-3)
     assert with_laws < 1e-6
     assert native > 1e-3
 
@@ -94,7 +113,10 @@ def test_effects_together(nao, effects):
     assert native > 5e-3
 
 
-@pytest.mark.parametrize("name", ["weak, with play", "elastic with friction"])
+@pytest.mark.parametrize(
+    "name",
+    ["weak, with play", "elastic with friction", "a controller and a spring"],
+)
 def test_servos_with_damping_inside_of_their_limit(name):
     """There MuJoCo leaves a limit a step late, which the laws mend; steps of 2 ms."""
     plant = load_plant("so101", "fixed")

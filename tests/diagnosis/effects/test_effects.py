@@ -41,6 +41,9 @@ PARAMETERS = {
     "speed_limit": "speed",
     "servo_gain": "factor",
     "servo_damping": "factor",
+    "integral_term": "time",
+    "dead_band": "width",
+    "error_derivative": "share",
     "armature": "inertia",
     "payload_mass": "mass",
     "com_offset": "x y z",
@@ -227,14 +230,16 @@ def test_where_effects_may_be():
     assert driven == {
         *("backlash", "servo_gain", "servo_damping", "servo_fade", "servo_off"),
         *("speed_limit", "joint_elasticity", "load_friction"),
+        *("dead_band", "error_derivative"),
     }
     assert places["torque_limit"] == ("hip", "knee")
-    by_load = {name for name, found in places.items() if not found}
-    assert by_load == {
+    fixed_only = {name for name, found in places.items() if not found}
+    assert fixed_only == {
+        "integral_term",
         *("gear_friction", "gear_stribeck_friction"),
         *("directional_gear_friction", "quadratic_gear_friction"),
     }
-    for name in by_load:  # the ground would load the gears of legs
+    for name in fixed_only:  # the ground would load gears and servos of legs
         assert effect(name).places(walker(base="fixed"), EVERYTHING) == ("hip",)
 
 
@@ -254,11 +259,33 @@ def test_only_joints_that_are_driven_have_a_motor():
 def test_where_effects_cannot_be():
     fixed, bare = walker(base="fixed"), [trace()]
     none = ("command_latency", "gyro_bias", "speed_limit", "contact_friction")
-    for name in (*none, "contact_compliance", "uneven_ground", "torque_scale"):
+    controllers = ("integral_term", "dead_band", "error_derivative")
+    for name in (
+        *none,
+        *controllers,
+        "contact_compliance",
+        "uneven_ground",
+        "torque_scale",
+    ):
         assert effect(name).places(fixed, bare) == ()
     assert effect("ground_slope").places(fixed, bare) == ("world",)
     assert effect("contact_friction").places(walker(feet=()), bare) == ()
     assert effect("contact_friction").places(walker(), bare) == ("feet",)
+
+
+@pytest.mark.parametrize("name", ["integral_term", "dead_band", "error_derivative"])
+def test_torques_that_servos_ask_for_tell_nothing_of_their_controllers(name):
+    by_servo = replace(compared(), by_servo=True)
+    fixed = walker(base="fixed")
+    asked = [replace(one, motion=by_servo) for one in EVERYTHING]
+    assert effect(name).places(fixed, EVERYTHING) == ("hip",)
+    assert effect(name).places(fixed, asked) == ()
+
+
+def test_without_damping_of_its_own_a_servo_has_none_of_an_error():
+    undamped = replace(EVERYTHING[0], servo=servo(kd=(0.0, 0.0)))
+    assert effect("error_derivative").places(walker(), [undamped]) == ()
+    assert effect("dead_band").places(walker(), [undamped]) == ("hip",)
 
 
 def test_the_traces_own_servos_count():

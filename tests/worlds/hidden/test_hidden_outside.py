@@ -1,6 +1,7 @@
 """Effects outside the first sets' library, each against a closed form."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -78,6 +79,43 @@ def test_a_hanging_pendulum_rests_anywhere_in_the_dead_band():
     assert far == pytest.approx(0.0, abs=1e-3)  # only gravity acts
     near = run([], held(0.15, 600)).position_rad[-1, 0]
     assert near == pytest.approx(0.15 - WEIGHT_NM / KP * math.sin(near), abs=1e-4)
+
+
+@pytest.mark.parametrize("share", [0.0, 0.4, 1.0])
+def test_damping_of_errors_lets_a_steady_motion_lag_less(share):
+    """Across gravity, at a steady speed v, the error is kd (1 - share) v / kp."""
+    plant, speed, rows = limb_plant("two_dof"), 0.4, 1500
+    path = np.zeros((rows, 2))
+    path[:, 1] = speed * np.arange(rows) / 1000
+    effects = [f"error_derivative@J2:share={share}"] if share else []
+    found = run(effects, path, 1000, plant).position_rad[-1, 1]
+    # a command that holds for a tick is half a tick behind the path on average
+    behind = path[-1, 1] - 0.5 * speed / 1000 - found
+    lag_s = plant.kd_nm_s_rad[1] / plant.kp_nm_rad[1]
+    assert behind == pytest.approx((1 - share) * lag_s * speed, abs=2e-5)
+
+
+def test_a_step_of_the_target_gives_the_impulse_of_its_damping():
+    from worlds.hidden.servos import Servos
+
+    bare = hidden_plant("pendulum")
+    plant = replace(bare, kd_nm_s_rad=np.array([0.8]))
+    for step_s in (0.0005, 0.005):
+        servos = Servos(plant, step_s)
+        KINDS["error_derivative"].change_servos(servos, 0, {"share": 0.5})
+        position = np.array([0.2])
+        assert servos.controlled(np.zeros(1), position) == pytest.approx([0.0])
+        steps = round(0.5 / step_s)
+        leads = [servos.controlled(np.array([0.1]), position) for _ in range(steps)]
+        impulse = KP * np.sum(np.array(leads) - 0.1) * step_s
+        assert impulse == pytest.approx(0.5 * 0.8 * 0.1)
+        assert leads[0] > leads[1] > 0.1
+
+
+def test_only_servos_with_damping_can_damp_errors():
+    kind = KINDS["error_derivative"]
+    assert kind.possible(hidden_plant("pendulum"))
+    assert not kind.possible(hidden_plant("nao"))  # all is back-EMF
 
 
 # Readings
@@ -300,8 +338,6 @@ def inverse(plant, angles, time_s):
 def test_some_ticks_of_a_run_are_each_nth_with_the_recording_s_first():
     whole = run([], held(0.9, 100))
     later = Clock(STEP_S, whole.clock.ticks, 7)
-    from dataclasses import replace
-
     some = replace(whole, clock=later).every(4)
     assert some.clock.ticks[some.clock.first] == later.ticks[7]
     assert (np.diff(some.clock.ticks) == 4 * 40).all()

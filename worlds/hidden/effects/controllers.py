@@ -1,8 +1,9 @@
-"""Hidden physics of a servo's controller: an integral term, a dead band."""
+"""Hidden physics of a servo's controller: integral, dead band, derivative of errors."""
 
 from worlds.hidden.effects.kind import HiddenKind, Quantity, Values
+from worlds.hidden.plant import HiddenPlant
 from worlds.hidden.servos import Servos
-from worlds.hidden.setting import Setting
+from worlds.hidden.setting import Scales, Setting, Spot
 
 
 class IntegralTerm(HiddenKind):
@@ -52,3 +53,31 @@ class DeadBand(HiddenKind):
         """
         error = s.torque_nm / float(s.plant.kp_nm_rad[s.joint])
         return {"width": s.part(0.6, 0.03) * error}
+
+
+class ErrorDerivative(HiddenKind):
+    """The servo's damping acts on the rate of its error, in part or fully.
+
+    Its torque is kp e + kd (share dc/dt - v) with the target's rate dc/dt, which a lag
+    of kd / (10 kp) smooths: the derivative of textbooks' controllers has such a filter,
+    and a weight for the set-point (Astrom and Hagglund 2006, "Advanced PID control",
+    chapter 3).
+    """
+
+    name = "error_derivative"
+    since = 5
+    quantities = (Quantity("share", "1", 0.0, 1.0),)
+    needs_motion = True
+    sizes = (1.0, 0.05)
+
+    def change_servos(self, servos: Servos, joint: int, values: Values) -> None:
+        """Let the servo's damping take a share of the target's rate."""
+        servos.target_rate_share[joint] += values["share"]
+
+    def possible(self, plant: HiddenPlant) -> bool:
+        """Whether some servo has damping of its own, which is no back-EMF."""
+        return bool(plant.kd_nm_s_rad.any())
+
+    def shows(self, plant: HiddenPlant, scales: Scales, spot: Spot) -> bool:
+        """Whether this joint's servo has damping of its own."""
+        return bool(plant.kd_nm_s_rad[spot.joint] > 0)

@@ -24,7 +24,7 @@ from worlds.hidden.run import run_hidden
 from worlds.hidden.scales import scales
 from worlds.recordings.metadata import RecordingMetadata
 
-LEARNED = {"presliding", "cogging", "late_reading"}
+LEARNED = {"presliding", "cogging", "late_reading", "integral_term", "dead_band"}
 """What was outside the library when the set was drawn, and is not any more."""
 PLAN = CasePlan("single", "so101", 100, "servos", 1, False, "mujoco")
 TORQUES = replace(PLAN, robot="z1", drive="torques")
