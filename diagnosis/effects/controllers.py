@@ -54,7 +54,7 @@ class IntegralTerm(CommandedServo):
 
     def parameters(self, plant: Plant, place: str) -> tuple[Parameter, ...]:
         """The integral time [s], the same for all robots and places."""
-        return (Parameter("time", "s", 0.05, 100.0, np.inf, 1.0, logarithmic=True),)
+        return (Parameter("time", "s", 0.05, 1000.0, np.inf, 1.0, logarithmic=True),)
 
     def places(self, plant: Plant, traces: Sequence[Trace]) -> tuple[str, ...]:
         """Names of joints whose servo follows commands, on a fixed base only."""
