@@ -4,7 +4,8 @@ Where servos with known gains drive the joints, their law says what torque they 
 in a recorded motion: kp (command - q) - kd v. It is compared with the torque that the
 motion needs. A servo that is not as declared needs another error, and so asks for
 another torque by the declared law, for the same motion. What effects change is added to
-the torque that the motion needs, which is known without the noise of the error.
+the torque that the motion needs, which is known without the noise of the error. What
+firmware does beside stiffness and damping (`effects.controllers`) is left out.
 """
 
 from collections.abc import Sequence

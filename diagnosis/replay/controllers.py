@@ -25,6 +25,9 @@ and Hagglund 2006, "Advanced PID control", chapter 3)."""
 LEAST_LAG_S = 1e-9
 """Smallest lag [s], to avoid division by zero: shorter than any step."""
 
+LEAST_WAY_RAD = 1e-12
+"""Way [rad] in a step up to which a joint counts as resting, to avoid division by 0."""
+
 
 class BatchControllers:
     """Integral terms, dead bands and derivatives of set-points of servos in a batch.
@@ -108,9 +111,10 @@ class BatchControllers:
         low, high = np.minimum(error_rad, after), np.maximum(error_rad, after)
         width = self._width_rad
         inside = np.minimum(high, width) - np.maximum(low, -width)
-        way = np.maximum(high - low, 1e-12)
+        way = np.maximum(high - low, LEAST_WAY_RAD)
         moving = 1 - np.minimum(np.maximum(inside, 0.0) / way, 1.0)
-        return np.where(high > low, moving, np.abs(error_rad) >= width)
+        moves = high - low > LEAST_WAY_RAD
+        return np.where(moves, moving, np.abs(error_rad) >= width)
 
 
 def derivative_lag_s(kp_nm_rad: FloatArray, kd_nm_s_rad: FloatArray) -> FloatArray:
@@ -143,10 +147,8 @@ class HeldTorques:
         mass, bias, passive, speed = self._state
         nv = self._model.nv
         dry_nm = np.asarray(self._batch.expand("dof_frictionloss"))
-        rows, cols = (
-            np.repeat(np.arange(nv), self._model.M_rownnz),
-            self._model.M_colind,
-        )
+        rows = np.repeat(np.arange(nv), self._model.M_rownnz)
+        cols = self._model.M_colind
         dense = np.zeros((len(mass), nv, nv))
         dense[:, rows, cols] = dense[:, cols, rows] = mass
         pushed = np.einsum("nij,nj->ni", dense, acceleration_rad_s2)

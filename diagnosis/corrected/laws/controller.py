@@ -62,10 +62,10 @@ class Controller(Law):
         The joint moves on at its speed.
         """
         low, high = min(error, after), max(error, after)
-        if low == high:
+        if high - low <= 1e-12:  # at rest
             return float(abs(error) >= self.dead_band_rad)
         inside = min(high, self.dead_band_rad) - max(low, -self.dead_band_rad)
-        return 1 - min(max(inside, 0.0) / max(high - low, 1e-12), 1.0)
+        return 1 - min(max(inside, 0.0) / (high - low), 1.0)
 
     def _held_nm(self, step: Step) -> float:
         """Torque [N m] with which the servo moves its joint steadily at the start."""

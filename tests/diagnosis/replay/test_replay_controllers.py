@@ -217,6 +217,7 @@ def test_within_the_band_there_is_damping_only():
     [
         (0.019, 0.0, 0.0),
         (-0.019, 0.0, 0.0),
+        (0.019, 1e-10, 0.0),  # hardly moves
         (0.021, 0.0, 1.0),
         (-0.5, 0.0, 1.0),
         (0.021, 4.0, 0.25),  # after a quarter of the step's way it is in the band

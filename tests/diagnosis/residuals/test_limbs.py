@@ -97,6 +97,24 @@ def test_parts_move_as_they_do_in_the_whole(arms, model):
         np.testing.assert_allclose([by_parts], stacked(whole, channels), atol=1e-9)
 
 
+def test_in_the_midst_of_a_motion_parts_begin_as_the_whole_does(arms):
+    """Integral terms begin with what the acceleration of each joint needs."""
+    trace = moved(arms).part(30, 90)
+    channels = Channels(
+        tuple(f"position.{joint}" for joint in arms.joints), np.full(4, 1e-3)
+    )
+    predictor = Predictor(arms, [trace], channels)
+    model = (PlacedEffect("integral_term", "elbow2", (0.5,)),)
+    (by_parts,) = predictor.predict([model])
+    run = Run.of(trace)
+    variants = variants_of(arms, [model])
+    (whole,) = replay([run], variants, predictor.step_s)
+    np.testing.assert_allclose([by_parts], stacked(whole, channels), atol=1e-9)
+    steady = replace(run, acceleration_rad_s2=None)
+    (other,) = replay([steady], variants, predictor.step_s)
+    assert np.abs(stacked(other, channels)[0] - by_parts)[:, 3].max() > 1e-4
+
+
 def test_an_effect_changes_only_its_own_part(arms):
     """Of the two arms, the one that it is on; a delay of all commands changes both."""
     names = tuple(f"position.{joint}" for joint in arms.joints)

@@ -98,3 +98,15 @@ def test_late_commands_of_a_part_are_those_from_before_it():
         run.whole.command_rad[earlier], whole.command_rad[FIRST - 3]
     )
     assert Run.of(whole).whole is None
+
+
+def test_the_acceleration_at_a_part_s_start_is_known_and_that_of_a_whole_is_not():
+    """Of swings, to 1 %; what is at a recording's first row is taken as steady."""
+    time_s = np.arange(2 * HZ) / HZ
+    position = np.outer(np.sin(6 * time_s), [0.3, -0.2])
+    noise = NOISE_RAD * np.random.default_rng(0).standard_normal(position.shape)
+    swinging = Trace("t", time_s, position + noise, Servo.ideal(2))
+    row = 210
+    found = Run.of(swinging.part(row, row + HZ)).acceleration_rad_s2
+    assert found == pytest.approx(-36 * position[row], abs=0.01 * 36 * 0.3)
+    assert Run.of(swinging).acceleration_rad_s2 is None

@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from groundwalk.errors import BadValueError
 from worlds.hidden.commands import PathLine
 from worlds.hidden.effects import KINDS, Hidden
 from worlds.hidden.effects.flexible_links import across
@@ -115,7 +116,11 @@ def test_a_step_of_the_target_gives_the_impulse_of_its_damping():
 def test_only_servos_with_damping_can_damp_errors():
     kind = KINDS["error_derivative"]
     assert kind.possible(hidden_plant("pendulum"))
-    assert not kind.possible(hidden_plant("nao"))  # all is back-EMF
+    nao = hidden_plant("nao")  # all is back-EMF
+    assert not kind.possible(nao)
+    still = np.zeros((2, len(nao.joints)))
+    with pytest.raises(BadValueError, match="no damping of its own"):
+        run(["error_derivative@LKneePitch:share=0.5"], still, plant=nao)
 
 
 # Readings
@@ -273,8 +278,6 @@ def test_there_are_the_kinds_that_set_2_promises():
 
 
 def test_bullet_cannot_bend_links():
-    from groundwalk.errors import BadValueError
-
     text = "link_flexibility@link:stiffness=10,damping=0"
     with pytest.raises(BadValueError, match="mujoco"):
         check_engine("bullet", [Hidden.parse(text)], floating=True)

@@ -1,5 +1,6 @@
 """Hidden physics of a servo's controller: integral, dead band, derivative of errors."""
 
+from groundwalk.errors import BadValueError
 from worlds.hidden.effects.kind import HiddenKind, Quantity, Values
 from worlds.hidden.plant import HiddenPlant
 from worlds.hidden.servos import Servos
@@ -71,7 +72,16 @@ class ErrorDerivative(HiddenKind):
     sizes = (1.0, 0.05)
 
     def change_servos(self, servos: Servos, joint: int, values: Values) -> None:
-        """Let the servo's damping take a share of the target's rate."""
+        """Let the servo's damping take a share of the target's rate.
+
+        Raises:
+          BadValueError: the servo has no damping of its own.
+        """
+        if not servos.kd_nm_s_rad[joint] > 0:
+            raise BadValueError(
+                "error_derivative: this joint's servo has no damping of its own (kd is "
+                "0, all damping is back-EMF); choose a joint whose servo has some"
+            )
         servos.target_rate_share[joint] += values["share"]
 
     def possible(self, plant: HiddenPlant) -> bool:
