@@ -27,10 +27,10 @@ class IntegralTerm(CommandedServo):
     """A servo that also integrates its error e: kp (e + int e dt / time) - kd v.
 
     The integral's part is at most the servo's largest torque (anti-windup). A robot
-    that is recorded has been switched on for a while, so that the integral begins such
-    that the servo holds what gravity and motion need at the start, see
-    `replay.controllers`. Under feet the ground bears a part of that, and how large a
-    part is not known: only robots on a fixed base are searched for it.
+    that is recorded has been switched on for a minute or more, so that the integral
+    begins such that the servo nearly holds what gravity and motion need at the start,
+    see `replay.controllers`. Under feet the ground bears a part of that, and how large
+    a part is not known: only robots on a fixed base are searched for it.
 
     The value is the integral time [s], as data sheets of drives state it: usually 0.05
     to some seconds. Infinity stands for no integral; what acts is its inverse.

@@ -18,6 +18,10 @@ from groundwalk.arrays import FloatArray
 CONTROLLED = "integral_1_s", "dead_band_rad", "rate_share"
 """Attributes of `Joints` that are 0 where a servo only has stiffness and damping."""
 
+ON_S = 60.0
+"""Time [s] for which a robot has been switched on, as a rule, when a recording begins.
+An integral of a longer time has gathered only a part of what it will hold."""
+
 DERIVATIVE_LAGS = 10.0
 """The lag of a set-point's rate is kd / kp over this number. Usual are 2 to 20 (Astrom
 and Hagglund 2006, "Advanced PID control", chapter 3)."""
@@ -52,6 +56,7 @@ class BatchControllers:
         self._law, self._step_s = law, step_s
         gains = (law[name][self._at] for name in ("kp", "kd"))
         self._passed = -np.expm1(-step_s / derivative_lag_s(*gains))
+        self._gathered = -np.expm1(-ON_S * self._integral_1_s)
         self._start_nm = np.zeros_like(self._share)
         self._smooth_rad: FloatArray | None = None
         self._summed_rad = np.zeros_like(self._share)
@@ -64,7 +69,8 @@ class BatchControllers:
     def begin(self, start_nm: FloatArray | None = None) -> None:
         """Begin such that servos that integrate give (rows, j) torques [N m] at first.
 
-        None for servos that do not integrate. Set-points begin at rest.
+        None for servos that do not integrate. An integral has grown towards that for
+        `ON_S`, by its own time constant. Set-points begin at rest.
         """
         self._smooth_rad = None
         if start_nm is not None:
@@ -89,8 +95,7 @@ class BatchControllers:
         acts = self._acting(error, speed_rad_s[self._at])
         if self._smooth_rad is None:
             self._smooth_rad = aim
-            held = self._start_nm / kp - acts * error
-            self._summed_rad = np.where(self._integral_1_s > 0, held, 0.0)
+            self._summed_rad = self._gathered * (self._start_nm / kp - acts * error)
         more = self._summed_rad + self._integral_1_s * self._step_s * acts * error
         most = most_nm / kp
         self._summed_rad = np.minimum(np.maximum(more, -most), most)

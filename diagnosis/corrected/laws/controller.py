@@ -47,8 +47,8 @@ class Controller(Law):
         kp = max(joint.kp, 1e-9)  # no division by zero
         if self.smooth is None:
             self.smooth = target
-            if self.integral_1_s > 0:
-                self.summed = self._held_nm(step) / kp - acting
+            gathered = -np.expm1(-60.0 * self.integral_1_s)
+            self.summed = float(gathered * (self._held_nm(step) / kp - acting))
         summed = self.summed + self.integral_1_s * step.seconds * acting
         self.summed = min(max(summed, -joint.limit / kp), joint.limit / kp)
         moved = -np.expm1(-step.seconds / self.lag_s) * (target - self.smooth)

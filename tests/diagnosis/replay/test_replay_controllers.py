@@ -28,6 +28,7 @@ from wheel_rig import (
 
 from diagnosis.effects.parts import PlacedEffect
 from diagnosis.effects.variants import Joints
+from diagnosis.replay import controllers as module
 from diagnosis.replay.controllers import (
     DERIVATIVE_LAGS,
     BatchControllers,
@@ -127,6 +128,18 @@ def test_at_first_it_holds_what_gravity_needs():
     assert np.abs(fallen - truth).max() > 0.05
 
 
+@pytest.mark.parametrize("time_s", [20.0, 60.0, 200.0])
+def test_an_integral_has_grown_for_a_minute(time_s):
+    """By its time constant, towards the torque that holds the joint."""
+    own = controllers(integral_1_s=1 / time_s)
+    held_nm, error = 0.5, 0.02
+    own.begin(one(held_nm))
+    target = through(own, 0.1, 0.1 - error)
+    grown = (1 - np.exp(-60 / time_s)) * (held_nm / KP - error)
+    wanted = 0.1 + grown + error * STEP_S / time_s
+    assert target == pytest.approx(wanted, abs=1e-12)
+
+
 @pytest.mark.parametrize("known", [True, False])
 def test_in_the_midst_of_a_motion_it_gives_what_that_needs(known):
     """From the acceleration, too: without it 50 times the tolerance is lost."""
@@ -146,8 +159,9 @@ def test_in_the_midst_of_a_motion_it_gives_what_that_needs(known):
     assert off < 2 * TOLERANCE if known else off > 100 * TOLERANCE
 
 
-def test_dry_friction_a_spring_and_a_constant_torque_count_at_the_start():
+def test_dry_friction_a_spring_and_a_constant_torque_count_at_the_start(monkeypatch):
     """A wheel that turns against all of them; its integral stays as it begins."""
+    monkeypatch.setattr(module, "ON_S", 1e12)  # even the longest has gathered all
     plant, time_s = wheel(), ticks(0.3)
     speed, friction, constant, stiffness, rest = 0.8, 0.05, 0.06, 0.3, 0.5
     command = 0.1 + speed * time_s

@@ -7,6 +7,7 @@ from known_arms import SINGLE
 
 from diagnosis.effects import controllers as effects
 from diagnosis.effects.library import effect
+from diagnosis.effects.parts import PlacedEffect
 from diagnosis.pipeline import diagnose
 from diagnosis.replay import controllers as laws
 from diagnosis.traces.usage import Usage
@@ -52,6 +53,26 @@ def test_an_integral_term_is_found(time_s):
     noise, _ = floor(predictor)
     for others in [(GAIN,), (CONSTANT,), (GAIN, CONSTANT)]:
         assert fitted(predictor, *others).energy > 5 * noise
+
+
+def test_a_long_integral_time_is_none():
+    """What it has gathered at the start is nothing, either."""
+    truth = recorded(f"coulomb_friction@{JOINT}:torque=0.2")
+    predictor = predictor_of(truth)
+    predictor.correct(())
+    longest = PlacedEffect("integral_term", JOINT, (1e4,))
+    without, nearly = predictor.residuals([(), (longest,)])
+    change = nearly - without
+    assert 0.5 * change @ change < 1.0
+
+
+@pytest.mark.parametrize("factor", [0.5, 2.0])
+def test_how_long_a_robot_has_been_on_does_not_matter(factor, monkeypatch):
+    predictor = predictor_of(recorded(f"integral_term@{JOINT}:time=5.0"))
+    value, error = found_in(predictor, INTEGRAL)
+    monkeypatch.setattr(laws, "ON_S", factor * laws.ON_S)
+    again, _ = found_in(predictor, INTEGRAL)
+    assert abs(again - value) < error
 
 
 @pytest.mark.parametrize("width_rad", [0.003, 0.01, 0.03])
