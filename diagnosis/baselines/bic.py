@@ -18,7 +18,7 @@ from diagnosis.traces.trace import Trace
 from diagnosis.verdict import Verdict
 from groundwalk.arrays import FloatArray
 
-CANDIDATES = 8
+CANDIDATES = 12
 """Number of candidates (effects at places) that are fitted, those with the best first
 guesses; each fit takes many simulations."""
 

@@ -23,7 +23,7 @@ from diagnosis.traces.trace import Trace
 from diagnosis.verdict import Verdict
 from groundwalk.arrays import FloatArray
 
-CANDIDATES = 8
+CANDIDATES = 12
 """Number of effects that are fitted in each step, those with the best linear guesses
 beside the effects that are in the model already."""
 
