@@ -72,12 +72,12 @@ def effect_table() -> Table:
     """Table of the hidden effects: possible places, and parameters."""
     rows = []
     for name, kind in KINDS.items():
-        rows.append([name, f"@{kind.place}", "", "", _summary(type(kind))])
+        rows.append([name, f"@{kind.place}", _summary(type(kind))])
         for quantity in kind.quantities:
-            optional = "" if quantity.default is None else "optional"
-            values = [quantity.name, quantity.unit, quantity.range_text]
-            rows.append(["", *values, optional])
-    return ["effect", "where, with", "unit", "values", "what it is"], rows
+            optional = "" if quantity.default is None else ", optional"
+            unit = "" if quantity.unit == "1" else f" {quantity.unit}"
+            rows.append(["", quantity.name, f"{quantity.range_text}{unit}{optional}"])
+    return ["effect", "where, with", "what it is; values"], rows
 
 
 def servo_table() -> Table:

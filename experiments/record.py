@@ -61,8 +61,6 @@ class Record:
       base: fixed or floating; by default the one that the motion needs.
       hidden: physics that the model lacks, such as backlash@LKneePitch:gap=0.02 or
         coulomb_friction@LKneePitch:torque=0.2; `groundwalk list effects` shows all.
-      load: a known mass [kg] that a body carries, and where in the body's frame it is
-        fixed [m], such as link=1.02@0,0,-0.15; the recording states it.
       duration: length of the recording [s].
       seed: every random number follows from it.
       play: a CSV file of commands to play instead of `motion`, as --plan and
@@ -74,6 +72,8 @@ class Record:
       kd: with --plan, damping of all servos [N m s/rad].
       max_torque: with --plan, torque limit of all servos [N m].
       max_speed: with --plan, highest speed of all joints [rad/s].
+      load: a known mass [kg] that a body carries, and where in the body's frame it is
+        fixed [m], such as link=1.02@0,0,-0.15; the recording states it.
 
     Example:
       >>> Record(Path("air.parquet"), robot="pendulum", duration=2.0).on_feet
@@ -86,7 +86,6 @@ class Record:
     motion: Motion = "multisine"
     base: Literal["fixed", "floating"] | None = None
     hidden: tuple[str, ...] = ()
-    load: tuple[str, ...] = ()
     duration: float = 10.0
     seed: int = 1
     play: Path | None = None
@@ -96,6 +95,7 @@ class Record:
     kd: float | None = None
     max_torque: float | None = None
     max_speed: float | None = None
+    load: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         """Refuse invalid options before anything is computed."""

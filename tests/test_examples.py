@@ -104,6 +104,7 @@ def test_your_own_recording(tmp_path):
     assert (tmp_path / "dirt" / "diagnosis" / "report.html").exists()
 
 
+@pytest.mark.slow
 def test_custom_effect(tmp_path, capsys):
     module = example("custom_effect")
     verdict = module.main(tmp_path / "water", duration=3)

@@ -40,6 +40,7 @@ def test_nothing_is_named_where_nothing_changed(traces, healthy):
     assert any("torques for which servos ask" in text for text in verdict.limits)
 
 
+@pytest.mark.slow
 def test_a_servo_that_is_declared_too_stiff_is_found(traces, healthy):
     wrong = [declaring(trace, "shoulder", 1.5) for trace in traces]
     name, place, factor = only_effect(verdict_of(wrong, healthy))
@@ -47,6 +48,7 @@ def test_a_servo_that_is_declared_too_stiff_is_found(traces, healthy):
     assert factor == pytest.approx(1 / 1.5, rel=0.05)
 
 
+@pytest.mark.slow
 def test_late_commands_are_found(traces, healthy):
     wrong = [hurried(trace, 3) for trace in traces]
     name, place, delay_s = only_effect(verdict_of(wrong, healthy))
@@ -54,6 +56,7 @@ def test_late_commands_are_found(traces, healthy):
     assert delay_s == pytest.approx(0.03, rel=0.1)
 
 
+@pytest.mark.slow
 def test_a_payload_is_found_at_its_link(healthy):
     heavier = [followed(loaded(1.0, "lower"), seed=seed) for seed in (0, 1, 2)]
     name, place, mass_kg = only_effect(verdict_of(heavier, healthy))

@@ -34,6 +34,7 @@ def test_a_right_model_lacks_nothing(noise_rad):
     )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("noise_rad", "kg"), [(1e-5, 1.0), (1e-4, 1.0), (1e-4, 12.0)])
 def test_a_payload_is_found_at_its_link(noise_rad, kg):
     """The last one is heavier than the whole arm."""
@@ -69,6 +70,7 @@ def test_a_payload_is_found_beside_friction_at_all_joints():
     assert mass_kg == pytest.approx(0.7, rel=0.1)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("joint", "scale"), [("elbow", (1, 1, 1.3)), ("shoulder", (1, 0.8, 1))]
 )

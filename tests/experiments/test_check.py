@@ -38,6 +38,7 @@ def found(recordings):
     return check_recordings(checked(recordings, "multisine"))
 
 
+@pytest.mark.slow
 def test_sizes_lie_between_noise_and_what_the_servo_can_do(found):
     assert found.usable
     torque = found.size("torque_offset@swing").told
@@ -47,6 +48,7 @@ def test_sizes_lie_between_noise_and_what_the_servo_can_do(found):
     assert found.noise["position.swing"].value == pytest.approx(6e-4, rel=0.5)
 
 
+@pytest.mark.slow
 def test_how_far_the_sim_is_off(recordings, found, tmp_path, capsys):
     assert found.off["position.swing"] == pytest.approx(1.0, abs=0.2)
     hidden = ("coulomb_friction@swing:torque=0.3",)
@@ -60,6 +62,7 @@ def test_how_far_the_sim_is_off(recordings, found, tmp_path, capsys):
     assert "the sim is off by" in capsys.readouterr().out
 
 
+@pytest.mark.slow
 def test_more_recordings_tell_smaller_effects(recordings, found):
     both = check_recordings(checked(recordings, "multisine", "ramps"))
     key = "joint_spring@swing"

@@ -68,10 +68,13 @@ def test_every_hidden_effect_is_there_with_its_place_and_its_parameters():
     start = names.index("backlash")
     first = next(i for i, row in enumerate(rows) if row["effect"] == names[start])
     assert rows[first]["where, with"] == "@joint"
-    assert "Play" in rows[first]["what it is"]
+    assert "Play" in rows[first]["what it is; values"]
     gap = rows[first + 1]
-    assert gap["where, with"] == "gap"
-    assert (gap["unit"], gap["values"]) == ("rad", "0 to 0.5")
+    assert (gap["where, with"], gap["what it is; values"]) == ("gap", "0 to 0.5 rad")
+    soft = next(
+        i for i, row in enumerate(rows) if row["effect"] == "contact_compliance"
+    )
+    assert rows[soft + 2]["what it is; values"] == "0 or more N s/m, optional"
 
 
 def test_a_hidden_effect_can_be_typed_as_the_list_says():
@@ -82,7 +85,7 @@ def test_a_hidden_effect_can_be_typed_as_the_list_says():
             name = f"{row['effect']}{where}"
             typed[name] = []
         else:
-            low = row["values"].split()[0].replace("any", "0")
+            low = row["what it is; values"].split()[0].replace("any", "0")
             typed[name].append(f"{where}={low}")
     for name, values in typed.items():
         text = f"{name}:{','.join(values)}"

@@ -73,6 +73,7 @@ def test_a_run_does_not_go_on_with_another_gait(whole, tmp_path):
         main(TerrainStress(resume=other.path))
 
 
+@pytest.mark.slow
 def test_a_run_that_was_killed_goes_on_to_the_same_bits(whole, tmp_path):
     done = whole.read_json(HISTORY)
     killed = copy_of(whole, tmp_path / "killed")

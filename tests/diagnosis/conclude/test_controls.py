@@ -73,6 +73,7 @@ def test_what_has_one_place_has_no_wrong_one(predictor):
     assert controls(predictor, TRUTH, both_shoulders).wrong_place is None
 
 
+@pytest.mark.slow
 def test_another_effect_is_drawn_by_lot(predictor):
     """With as many values as the true one, and none that explains the same."""
     drawn = {
@@ -125,6 +126,7 @@ def weak():
     return sims(1, 2)
 
 
+@pytest.mark.slow
 def test_a_wrong_place_is_surely_worse_where_much_is_shown(weak):
     fit, judgement = judged(weak, (TRUTH,))
     assert judgement.limits == ()
@@ -160,6 +162,7 @@ def test_how_much_a_control_explains_since_the_effect_is_real():
     assert share("none") == 0.0
 
 
+@pytest.mark.slow
 def test_a_gain_elsewhere_is_no_twin(weak):
     _, judgement = judged(weak, (TRUTH,))
     assert judgement.follows["wrong_place"] < 0.5

@@ -69,6 +69,7 @@ def test_what_can_be_known_is_found(error):
     assert after[1] < 1 + 0.35 * (before[1] - 1)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("error", [nothing, chance])
 def test_noise_is_not(error):
     before, after = before_and_after(error)

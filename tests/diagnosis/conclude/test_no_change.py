@@ -175,6 +175,7 @@ def test_three_of_each_find_no_change_as_rarely_as_the_level_says(between, most)
     assert wrong / count < most
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("factor", [0.5, 2.0])
 @pytest.mark.parametrize("name", ["LEVEL", "LEAST_SHARE"])
 def test_half_or_twice_a_constant_decides_the_same(monkeypatch, name, factor):

@@ -77,6 +77,7 @@ def test_what_joints_share_is_old_together():
     assert old(RUBS, (), *model) == set()
 
 
+@pytest.mark.slow
 def test_of_effects_that_explain_the_same_none_passes_as_new():
     """Left out one by one each would seem to be worth nothing, and none to be old."""
     twins = (
@@ -105,6 +106,7 @@ def test_where_the_healthy_robot_stood_still_nothing_is_known_to_be_old():
     assert old_effects(judge, found) == ()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("before", "expected"), [((), 0), ("limited", 1)])
 def test_a_limit_that_no_finite_value_switches_off(before, expected):
     limited = (("torque_limit", "elbow", 1.2),)

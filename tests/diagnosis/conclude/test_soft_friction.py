@@ -56,6 +56,7 @@ def by_stopping_friction():
     return trace_of(PLANT, time_s, truth + noise, command_rad=command)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("recording", "soft"), [(by_mujoco, True), (by_stopping_friction, False)]
 )

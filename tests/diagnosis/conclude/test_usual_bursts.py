@@ -50,6 +50,7 @@ def test_what_happens_again_and_again_is_no_event(often, name, factor, monkeypat
     assert (found.name if found else None) == ("servo_off" if often else None)
 
 
+@pytest.mark.slow
 def test_what_the_healthy_robot_does_as_well_is_no_event():
     both, fitted = diagnosed(often=False)
     healthy, _ = diagnosed(often=True)

@@ -98,6 +98,7 @@ def searched(*truth):
     return Search(Judge(*predictors, SINGLE)).run().winner.model
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("truth", "rel"),
     [

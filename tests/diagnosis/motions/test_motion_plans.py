@@ -90,6 +90,7 @@ def test_weak_servos_get_smaller_motions():
     assert np.isfinite(position).all()
 
 
+@pytest.mark.slow
 def test_servos_that_hold_nothing_get_no_motion():
     plant = limited(torque_nm=1e-3)
     assert planned(plant, Limits.of(plant)) == []

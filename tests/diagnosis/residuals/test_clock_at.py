@@ -70,6 +70,7 @@ def anew(predictor, model, noise=None):
     return Learned._timed_anew(found)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("other", [1.05, 1.1, 1.2])
 def test_noise_is_measured_anew_where_it_is_another(trace, mixed, other, monkeypatch):
     monkeypatch.setattr(learned, "OTHER_NOISE", other)

@@ -12,6 +12,7 @@ from diagnosis.residuals.channels import shared_channels
 from diagnosis.residuals.data_sets import DataSets
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("kp", "kd", "wanted_s"), [(8.0, 0.4, 0.004), (2000.0, 1.0, 0.001)]
 )
@@ -26,6 +27,7 @@ def test_stiff_joints_take_short_steps(kp, kd, wanted_s):
     assert set(both.steps_s) == set(test.steps_s) == {wanted_s}
 
 
+@pytest.mark.slow
 def test_recordings_keep_their_weights():
     """In all parts, and where a model is taken whose steps are measured anew."""
     plant = plant_of(ARM, kp=8.0, kd=0.4)

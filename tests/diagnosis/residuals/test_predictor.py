@@ -110,6 +110,7 @@ def test_calibration_at_one_model_serves_others(pendulum):
     assert np.sqrt(np.mean(difference**2)) > 0
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("kind", "values", "usual", "coarse"),
     [(JointElasticity, (800.0, 0.2), 0.15, 0.4), (Backlash, (0.03,), 5.0, 9.0)],

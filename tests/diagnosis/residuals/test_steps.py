@@ -45,6 +45,7 @@ def wrong(trace, again):
     return max(abs(a / b - 1) for a, b in zip(long, short, strict=True))
 
 
+@pytest.mark.slow
 def test_fits_in_long_steps_end_at_the_values_of_short_ones(trace):
     assert wrong(trace, again=2) < 2e-4
     assert wrong(trace, again=0) > 1e-3

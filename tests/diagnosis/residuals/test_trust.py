@@ -89,6 +89,7 @@ def errors_of(traces, weighs):
     return [abs(one.values[0] / 0.5 - 1) for one in best.model]
 
 
+@pytest.mark.slow
 def test_one_odd_recording_does_not_decide_values(traces):
     assert max(errors_of(traces, weighs=False)) > 0.5
     assert max(errors_of(traces, weighs=True)) < 0.15

@@ -75,6 +75,7 @@ def test_how_long_a_robot_has_been_on_does_not_matter(factor, monkeypatch):
     assert abs(again - value) < error
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("width_rad", [0.003, 0.01, 0.03])
 def test_a_dead_band_is_found(width_rad):
     """Where the joint is at the band's edge, the two engines' steps differ, too."""
@@ -115,6 +116,7 @@ NEIGHBOURS = [
 ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("truth", "right", "own"), NEIGHBOURS, ids=[one[0] for one in NEIGHBOURS]
 )

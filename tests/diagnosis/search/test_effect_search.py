@@ -42,6 +42,7 @@ def searched(*effects, rules=LEAN):
     return search, search.run(anyway=True)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "truth",
     [
@@ -63,6 +64,7 @@ def test_one_effect_is_found_with_its_value(truth):
     assert found.winner.selected == pytest.approx(found.floor, rel=0.4)
 
 
+@pytest.mark.slow
 def test_two_effects_that_hide_each_other_are_found_together():
     """A servo that is stiffer, and a forearm that is heavier: they sag as before."""
     truth = ("servo_gain", "elbow", 1.6), ("payload_mass", "lower", 0.24)
@@ -74,6 +76,7 @@ def test_two_effects_that_hide_each_other_are_found_together():
     assert values["payload_mass"] == pytest.approx(0.24, rel=0.15)
 
 
+@pytest.mark.slow
 def test_a_servo_that_is_much_too_weak():
     """It drops its arm: it can do far less than the motion should have taken."""
     search, _ = searched()
@@ -108,6 +111,7 @@ def test_an_effect_moves_to_its_body_before_more_are_added():
     assert best.model[0].values[0] == pytest.approx(3.0, rel=0.05)
 
 
+@pytest.mark.slow
 def test_two_effects_are_found_together():
     truth = ("servo_gain", "elbow", 0.7), ("coulomb_friction", "shoulder", 0.4)
     _, found = searched(*truth)
@@ -119,6 +123,7 @@ def test_two_effects_are_found_together():
     assert found.best[2][0].selected < found.best[1][0].selected - 20
 
 
+@pytest.mark.slow
 def test_a_push_that_another_effect_outshouts():
     """It stands out only from what the weak servo leaves."""
     push = ("external_force", "lower", 0.0, 3.0, 3.0, 1.5, 0.2)
@@ -291,6 +296,7 @@ def test_on_a_floating_base_only_the_selection_data_are():
     assert floating.evidence == floating.selected
 
 
+@pytest.mark.slow
 def test_little_in_the_selection_data_is_enough_if_much_is_fitted():
     """A joint need not move as much in a part that is short."""
     truth = ("viscous_friction", "elbow", 0.5)
@@ -304,6 +310,7 @@ def test_little_in_the_selection_data_is_enough_if_much_is_fitted():
     assert close[0] & {"viscous_friction@elbow", "servo_damping@elbow"}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("left", "chosen"), [(50.0, 3), (1.1, 1)])
 def test_where_much_is_left_two_more_are_tried_together(monkeypatch, left, chosen):
     """Backlash without the friction that damps it explains little alone."""

@@ -61,6 +61,7 @@ def test_its_neighbours_cannot_be_mistaken_for_it(others):
     assert fitted(predictor, *with_dry).energy > 5 * floor(predictor)[0]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("truth", "own"),
     [

@@ -182,6 +182,7 @@ def test_what_recordings_leave_unknown_of_old_effects_is_no_change():
     assert left[1.0] < 1.5
 
 
+@pytest.mark.slow
 def test_a_fault_as_small_as_usual_errors_is_seen_beside_a_reference():
     """A servo that lost 6 % of its stiffness: a model may be as wrong, a robot not."""
     before, after = of_arm(0), of_arm(10, gain=(0.94, 1.0))
@@ -238,6 +239,7 @@ def stepping(plant, seed, noise_rad):
     return replace(trace, name=f"steps {seed}", position_rad=position_rad)
 
 
+@pytest.mark.slow
 def test_errors_of_the_simulation_are_not_learned_from_the_healthy_robot():
     """With the steps that do elsewhere, up to 4 times the noise would be left."""
     plant = arm(kp=60.0, kd=1.5, limit=4.0)

@@ -107,6 +107,7 @@ def test_a_killed_run_goes_on_to_the_same_bits(made, tmp_path, monkeypatch):
     assert contents(tmp_path / "broken") == contents(made)
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("pendulums")
 def test_a_case_does_not_depend_on_how_many_there_are(made, tmp_path):
     make(tmp_path / "set", cases=1)

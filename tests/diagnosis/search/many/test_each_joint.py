@@ -39,10 +39,12 @@ def found(judge):
     return values(pruned(fits, each_joint.each_joint(fits)))
 
 
+@pytest.mark.slow
 def test_friction_is_found_at_each_joint(judge):
     assert found(judge) == pytest.approx(TRUE, rel=0.1)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("module", "name", "value"),
     [

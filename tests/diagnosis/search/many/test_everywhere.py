@@ -136,6 +136,7 @@ def test_a_single_effect_is_not_spread():
     assert everywhere(judge, found) is found
 
 
+@pytest.mark.slow
 def test_nothing_is_found_where_nothing_is_missing():
     judge, found = searched(duration_s=2.5)
     assert everywhere(judge, found) is found

@@ -46,6 +46,7 @@ def rubs():
     return fits_of(*(measured(seed, friction_nm) for seed in range(3)))
 
 
+@pytest.mark.slow
 def test_friction_at_all_joints_is_found_before_any_replay(rubs):
     (model, *_) = in_asked_torques(rubs)
     dry = {k: value for k, value in found(model).items() if k.startswith("coulomb")}
@@ -55,6 +56,7 @@ def test_friction_at_all_joints_is_found_before_any_replay(rubs):
     }
 
 
+@pytest.mark.slow
 def test_a_first_model_is_fitted_to_the_motions(rubs):
     model = from_asked_torques(rubs).model
     dry = {k: value for k, value in found(model).items() if k.startswith("coulomb")}
@@ -66,6 +68,7 @@ def test_a_first_model_is_fitted_to_the_motions(rubs):
     assert np.sqrt(np.mean(left**2)) < 3.0
 
 
+@pytest.mark.slow
 def test_stated_gains_are_doubted_for_strong_evidence():
     """Half the stiffness: no friction or mass does that."""
     both = fits_of(*(measured(seed, gain=(0.5, 0.5)) for seed in range(3)))
@@ -160,6 +163,7 @@ def test_in_recordings_too_short_to_be_smoothed_nothing_is_found(monkeypatch):
     assert in_asked_torques(fits_of(*short)) == []
 
 
+@pytest.mark.slow
 def test_of_a_promising_model_no_first_one_is_searched_for(rubs, monkeypatch):
     monkeypatch.setattr("diagnosis.search.many.everywhere.from_asked_torques", None)
     dry = {"shoulder": 0.5, "elbow": 0.5}

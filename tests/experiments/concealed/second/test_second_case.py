@@ -48,6 +48,7 @@ def truth_of(made, kind):
     return json.loads(path.read_text()), made / "cases" / f"case_{number:03d}"
 
 
+@pytest.mark.slow
 def test_the_truth_says_what_is_hidden_how_clearly_and_what_else_is_wrong(made):
     for kind, count in (("single", 1), ("pair", 2), ("none", 0)):
         truth, _ = truth_of(made, kind)
@@ -78,6 +79,7 @@ def test_recorded_times_are_even_and_two_gains_are_known(made):
     assert plant.joints == ("J1", "J2")
 
 
+@pytest.mark.slow
 def test_an_unknown_controller_leaves_positions_and_torques_only(made):
     _, folder = truth_of(made, "none")
     for path in sorted((folder / "recordings").iterdir()):
