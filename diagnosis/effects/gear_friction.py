@@ -113,7 +113,7 @@ class ShapedStribeck(GearRung):
     )
 
     def grown_from(self, other: PlacedEffect) -> tuple[PlacedEffect, ...]:
-        """The same peak as that with exponent 2, more and less abrupt."""
+        """Friction with a peak of exponent 2, with more and less abrupt peaks."""
         if other.name != "stribeck_friction":
             return ()
         return tuple(
@@ -142,7 +142,7 @@ class LoadedGear(GearRung):
     )
 
     def grown_from(self, other: PlacedEffect) -> tuple[PlacedEffect, ...]:
-        """It after dry friction alone, or after friction by the servo's torque alone.
+        """Friction of loaded gears, after dry friction or friction by servo torque.
 
         Where motor and links hold each other, the torques of both sides are equal.
         """
@@ -182,7 +182,7 @@ class LoadedStribeck(GearRung):
     )
 
     def grown_from(self, other: PlacedEffect) -> tuple[PlacedEffect, ...]:
-        """It after friction with a peak alone, or friction by load alone.
+        """Loaded gears with a peak, after friction with a peak or by load alone.
 
         The latter may be that by the servo's torque: where the motor's share is the
         larger one, a common share alone need not be better than none of the links'.
@@ -216,7 +216,7 @@ class LoadedStribeck(GearRung):
 
 
 class DirectionalGear(GearRung):
-    """As M4 with a share of each side: |k_L L - k_T T| and |e_L L - e_T T|: M5."""
+    """M5: M4 with a share of each side, |k_L L - k_T T| and |e_L L - e_T T|."""
 
     name = "directional_gear_friction"
     shown_by = "poses"
@@ -238,7 +238,7 @@ class DirectionalGear(GearRung):
     )
 
     def grown_from(self, other: PlacedEffect) -> tuple[PlacedEffect, ...]:
-        """It after friction by load with one share, which both sides start from."""
+        """Gears with a share of each side, after one share, which both start from."""
         if other.name != LoadedStribeck.name:
             return ()
         *peak, share, extra = other.values
@@ -253,7 +253,7 @@ class DirectionalGear(GearRung):
 
 
 class QuadraticGear(GearRung):
-    """As M5, with q P^2 beside t_s near standstill: M6.
+    """M6, which is M5 with q P^2 beside t_s near standstill.
 
     P is the smaller one of the torques of motor and links, where they are opposed; the
     published program has a q for each of the two ways, one stands for both here.
@@ -277,14 +277,14 @@ class QuadraticGear(GearRung):
     )
 
     def grown_from(self, other: PlacedEffect) -> tuple[PlacedEffect, ...]:
-        """It after the same friction without a square."""
+        """Gears with a square term, after the same friction without it."""
         if other.name != DirectionalGear.name:
             return ()
         values = (*other.values, GROWN_SQUARE_1_NM)
         return (PlacedEffect(self.name, other.place, values),)
 
     def simpler(self, placed: PlacedEffect) -> tuple[PlacedEffect, ...]:
-        """The same friction without a square."""
+        """Gears that rub by side of the load, without a square term."""
         return (PlacedEffect(DirectionalGear.name, placed.place, placed.values[:-1]),)
 
 

@@ -108,7 +108,7 @@ def _gravity_torque_nm(plant: Plant, joint: str) -> float:
 
 
 def _gravity_on(model: mujoco.MjModel, data: mujoco.MjData, joint: str) -> float:
-    """The same of one model, in the pose that `data` holds."""
+    """Largest torque [N m] of gravity about a joint of one model, posed as `data`."""
     number = model.joint(joint).id
     body = int(model.jnt_bodyid[number])
     weight = GRAVITY_M_S2 * float(model.body_subtreemass[body])

@@ -81,7 +81,8 @@ class Plant:
         MuJoCo's compiler makes some bodies simple: their mass matrix has no room for
         what a load beside the centre of mass adds. So they must not be simple.
         """
-        carried = [one for one in loads if one]
+        carried = list[Mapping[str, Load]]()
+        carried += (one for one in loads if one and one not in carried)
         if not carried:
             return self
         spec = self.spec.copy()

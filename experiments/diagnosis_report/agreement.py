@@ -4,8 +4,9 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
 
-from scipy.stats import chi2, norm
+from scipy.stats import chi2
 
+from diagnosis.conclude.estimates import Z_80
 from diagnosis.effects import effect as kind_of
 from diagnosis.verdict import Estimate, Found
 from experiments.diagnosis_report.numbers import DASH, estimate_text
@@ -13,9 +14,6 @@ from experiments.diagnosis_report.place_words import place_words
 
 LEVEL = 0.01
 """Probability with which recordings that agree would be called different."""
-
-Z_80 = float(norm.ppf(0.9))
-"""Half width of an 80 % interval of the normal distribution, in standard deviations."""
 
 
 def checked(effects: Sequence[Found]) -> list[dict[str, Any]]:
@@ -43,16 +41,19 @@ def agree(estimate: Estimate) -> bool | None:
     """Whether what recordings say alone differs by no more than their errors.
 
     By the chi-square test at the level 1 %; None if there are fewer than two. Distances
-    are from the value of all, in errors that follow from each recording's interval.
+    are from the value of all, in errors that follow from each recording's interval. One
+    whose interval has no width, since it lies beyond a bound of the value, is left out.
     """
-    if len(estimate.recordings) < 2:
+    known = [one for one in estimate.recordings.values() if one.high > one.low]
+    if len(known) < 2:
         return None
     total = 0.0
-    for one in estimate.recordings.values():
+    for one in known:
         far = estimate.value - one.value
-        width = one.high - one.value if far > 0 else one.value - one.low
-        total += (far * Z_80 / max(width, 1e-12)) ** 2
-    return bool(chi2.sf(total, len(estimate.recordings) - 1) > LEVEL)
+        towards = one.high - one.value if far > 0 else one.value - one.low
+        width = towards or one.high - one.low
+        total += (far * Z_80 / width) ** 2
+    return bool(chi2.sf(total, len(known) - 1) > LEVEL)
 
 
 def _alone(estimate: Estimate) -> str:

@@ -42,7 +42,7 @@ INTEGRAL_S = 0.2
 
 
 def controllers(limit=np.inf, kd=KD, **joints):
-    """Of one servo, with some of the attributes of `Joints`."""
+    """Controllers of one servo, with some of the attributes of `Joints`."""
     own = vars(Joints.neutral(1, 1))
     own |= {name: np.full((1, 1), value) for name, value in joints.items()}
     law = {"kp": KP, "kd": kd, "limit": limit}

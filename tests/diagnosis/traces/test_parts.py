@@ -101,7 +101,7 @@ def test_late_commands_of_a_part_are_those_from_before_it():
 
 
 def test_the_acceleration_at_a_part_s_start_is_known_and_that_of_a_whole_is_not():
-    """Of swings, to 1 %; what is at a recording's first row is taken as steady."""
+    """Swings have it to 1 %; at a recording's first row the motion counts as steady."""
     time_s = np.arange(2 * HZ) / HZ
     position = np.outer(np.sin(6 * time_s), [0.3, -0.2])
     noise = NOISE_RAD * np.random.default_rng(0).standard_normal(position.shape)

@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 from html_page import Page
 
+from diagnosis.conclude.estimates import Z_80
 from diagnosis.verdict import Estimate, ValueRange
-from experiments.diagnosis_report.agreement import Z_80, agree, checked
+from experiments.diagnosis_report.agreement import agree, checked
 from experiments.diagnosis_report.page import write_report
 
 PLAY = made_up.ONE.effects[0]
@@ -35,6 +36,16 @@ def test_recordings_agree_as_often_as_the_level_says():
     assert 385 <= agreed <= 400
     apart = draws + np.array([0.01, 0, 0, 0, -0.01])
     assert not any(agree(estimate(list(row))) for row in apart)
+
+
+def test_a_recording_beyond_a_bound_decides_nothing():
+    own = estimate([0.0295, 0.0305])
+    beyond = {**own.recordings, "far": ValueRange(0.0, 0.0, 0.0)}
+    assert agree(replace(own, recordings=beyond))
+    apart = estimate([0.02, 0.04])
+    assert not agree(
+        replace(apart, recordings={**apart.recordings, "far": beyond["far"]})
+    )
 
 
 def test_a_single_recording_agrees_with_nothing():

@@ -160,7 +160,7 @@ class LoadedStribeck(_Loaded):
 
 
 class DirectionalGear(_Loaded):
-    """As M4, with one share of the motor's torque and another of the links': M5."""
+    """M5: M4 with one share of the motor's torque and another of the links'."""
 
     name = "directional_gear_friction"
     quantities = (
@@ -173,7 +173,7 @@ class DirectionalGear(_Loaded):
 
 
 class QuadraticGear(_Loaded):
-    """As M5, with the square of the torque that goes through the gear: M6."""
+    """M6: M5 with the square of the torque that goes through the gear."""
 
     name = "quadratic_gear_friction"
     quantities = (*DirectionalGear.quantities, Quantity("extra_square", "1/(N m)", 0.0))
