@@ -15,6 +15,9 @@ from diagnosis.search.many.stepwise import Stepwise
 from diagnosis.search.result import Judged
 from diagnosis.search.screening import Screen
 
+BEGUN = 5
+"""Number of models that are fitted in the first round, from which the best goes on."""
+
 EXCHANGED = 8
 """Number of models with other effects in place of some that are fitted in a round."""
 
@@ -53,12 +56,13 @@ def _with_more(
     fits: Fits, best: Judged, step: Stepwise, known: KnownChanges
 ) -> Judged | None:
     """The model with effects beside its own; None if none makes it better."""
-    added = step.model()
-    if not added:
+    # linear estimates are roughest beside no effect, and later ones begin from there
+    added = step.models(1 if best.model else BEGUN)
+    starts = [(*best.model, *one) for one in added]
+    tried = fits.tried(starts, [known.jacobian(one) for one in starts])
+    if not tried:
         return None
-    start = (*best.model, *added)
-    (tried,) = fits.tried([start], [known.jacobian(start)])
-    larger = fits.fitted(tried.model)
+    larger = fits.fitted(tried[0].model)
     return larger if fits.is_better(larger, best) else None
 
 

@@ -79,10 +79,28 @@ class Stepwise:
         self._wanted = columns.T @ fit.residual
         self._square = float(fit.residual @ fit.residual)
 
-    def model(self) -> Model:
-        """The effects to add, with values to start a fit from; none if none helps."""
+    def models(self, most: int) -> list[Model]:
+        """Effects to add, with values to start a fit from; none if none helps.
+
+        The first model is the best linear one. Each of the others, at most `most` in
+        all, does without one kind of its effects: what a small effect of a kind changes
+        may look like the truth, and a large one not.
+        """
+        first = self._added(frozenset())
+        kinds = dict.fromkeys(placed.name for placed in first)
+        others = [self._added(frozenset({name})) for name in kinds]
+        found = {
+            frozenset(placed.key for placed in model): model
+            for model in (first, *others)
+            if model
+        }
+        return list(found.values())[:most]
+
+    def _added(self, without: frozenset[str]) -> Model:
+        """Effects to add, but none of some names; () if none helps."""
         every = tuple(range(self._values))
-        start = _Start(self.best.model, every, np.zeros(self._values))
+        away = np.zeros(self._values)
+        start = _Start(self.best.model, every, away, without)
         taken = self._chosen(start)
         for _ in range(EXCHANGES):
             before = {guess.rows for guess in taken}

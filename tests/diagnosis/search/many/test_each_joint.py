@@ -53,6 +53,8 @@ def test_friction_is_found_at_each_joint(judge):
         (stepwise, "UNSURE", 10.0),
         (stepwise, "UNSURE", 40.0),
         (stepwise, "MOST_AT_ONCE", 15),
+        (each_joint, "BEGUN", 2),
+        (each_joint, "BEGUN", 10),
         (each_joint, "EXCHANGED", 4),
         (each_joint, "EXCHANGED", 16),
     ],

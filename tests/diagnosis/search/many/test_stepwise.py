@@ -45,7 +45,7 @@ def stepwise(predictor, *model):
 
 
 def test_all_that_is_missing_is_chosen_at_once(predictor):
-    model = stepwise(predictor).model()
+    (model,) = stepwise(predictor).models(1)
     assert {placed.key for placed in model} == TRUE
     # at the shoulder the viscous friction is more than a linear estimate is trusted to
     found = {placed.key: placed.values[0] for placed in model}
@@ -53,15 +53,28 @@ def test_all_that_is_missing_is_chosen_at_once(predictor):
     assert dry == pytest.approx([DRY_NM[0], DRY_NM[2]], rel=0.1)
 
 
+def test_others_do_without_one_kind_of_the_best(predictor):
+    first, *others = (
+        {placed.name for placed in model} for model in stepwise(predictor).models(5)
+    )
+    assert first == {"coulomb_friction", "viscous_friction"}
+    assert len(others) == 2
+    assert [first - other for other in others] in (
+        [{"coulomb_friction"}, {"viscous_friction"}],
+        [{"viscous_friction"}, {"coulomb_friction"}],
+    )
+
+
 def test_what_the_model_has_is_not_added_again(predictor):
     known = PlacedEffect("viscous_friction", "shoulder", (1.0,))
-    added = {placed.key for placed in stepwise(predictor, known).model()}
+    (model,) = stepwise(predictor, known).models(1)
+    added = {placed.key for placed in model}
     assert added == TRUE - {known.key}
 
 
 def test_nothing_is_chosen_where_nothing_is_missing():
     step = stepwise(predictor_with((0.0, 0.0, 0.0), 0.0))
-    assert step.model() == ()
+    assert step.models(5) == []
     assert step.exchanged() == []
 
 
