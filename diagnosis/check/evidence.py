@@ -177,7 +177,8 @@ def evidence_of(
     predictor.correct()
     predictor.doubt(tolerances=False)
     found = _of_whole(predictor, tries)
-    noise = predictor.residual_of(_drawn(predictor))
+    drawn = predictor.drawn(np.random.default_rng(SEED))
+    noise = predictor.residual_of(drawn)
     return Evidence(tuple(found), _unknown(predictor, found), noise, weight, predictor)
 
 
@@ -252,16 +253,3 @@ def _component(plant: Plant, placed: PlacedEffect) -> int:
 
 def _whole(one: Signature, change: FloatArray) -> Signature:
     return replace(one, change=change, rows=np.arange(len(change)))
-
-
-def _drawn(predictor: Predictor) -> FloatArray:
-    """(rows, c) what noise and rounding make of the nominal motion [noise]."""
-    channels = predictor.channels
-    exact = predictor.predict([()])[0]
-    random = np.random.default_rng(SEED)
-    quantum = np.sqrt(12) * np.broadcast_to(channels.rounding, channels.noise.shape)
-    white = np.sqrt(np.maximum(channels.noise**2 - quantum**2 / 12, 0.0))
-    read = exact + white * random.standard_normal(exact.shape)
-    steps = np.where(quantum > 0, quantum, 1.0)
-    read = np.where(quantum > 0, np.round(read / steps) * steps, read)
-    return np.asarray(np.nan_to_num((read - exact) / channels.noise))

@@ -116,6 +116,10 @@ class TorquePredictor(Predictor):
         """(n, T, c) torques as of `predict`: there is no integration error."""
         return self.predict(models)
 
+    def drawn(self, random: np.random.Generator) -> FloatArray:
+        """(blocks, c) errors of a right model [noise]: what means vary by, drawn."""
+        return random.standard_normal(self._scored.shape)
+
     def _errors(self, models: Sequence[Model], exactly: bool) -> FloatArray:
         """(n, blocks, c) means of measured less needed torques [noise]."""
         wrong = self._means(self._measured - self.predict(models))

@@ -141,3 +141,17 @@ def test_dry_friction_stops_a_light_joint_with_a_strong_servo(step_s, emf):
     np.testing.assert_allclose(found[20:], wanted[20:], atol=2e-3)
     free = replayed(plant, run, step_s=step_s)[0][-1, 0]
     assert free == pytest.approx(command, abs=1e-3)
+
+
+def test_a_light_joint_held_by_friction_hardly_creeps():
+    """Within 0.5 mrad in 10 s; a simulated constraint yields a little by its nature."""
+    kp, kd, torque, command = 9.0, 0.62, 0.24, 0.02
+    light = WHEEL.replace(str(INERTIA), "1e-5")
+    plant = plant_of(light, kp=kp, kd=kd)
+    time_s = ticks(10.0)
+    run = run_from(trace_of(plant, time_s, command_rad=np.full(len(time_s), command)))
+    friction = ("coulomb_friction", HINGE, torque)
+    held = replayed(plant, run, friction, step_s=0.004)[0][:, 0]
+    assert np.abs(held).max() < 5e-4
+    free = replayed(plant, run, step_s=0.004)[0][-1, 0]
+    assert free == pytest.approx(command, abs=1e-3)
