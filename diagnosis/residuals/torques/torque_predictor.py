@@ -118,7 +118,7 @@ class TorquePredictor(Predictor):
 
     def drawn(self, random: np.random.Generator) -> FloatArray:
         """(blocks, c) errors of a right model [noise]: what means vary by, drawn."""
-        return random.standard_normal(self._scored.shape)
+        return np.asarray(random.standard_normal(self._scored.shape))
 
     def _errors(self, models: Sequence[Model], exactly: bool) -> FloatArray:
         """(n, blocks, c) means of measured less needed torques [noise]."""
