@@ -26,7 +26,6 @@ from diagnosis.check import check
 from diagnosis.check.result import Size
 from diagnosis.conclude.effect_sizes import scaled
 from diagnosis.effects import PlacedEffect, effect
-from diagnosis.effects.library import grown_from
 from diagnosis.traces.read import trace_of
 from diagnosis.verdict import Verdict
 from experiments.command_line import run_script
@@ -131,12 +130,8 @@ def is_found(verdict: Verdict, hidden: Hidden) -> tuple[bool, bool]:
     """Whether an effect is named at its place, and whether nothing else may be it."""
     key = f"{hidden.name}@{hidden.place}"
     for one in verdict.effects if verdict.kind == "effects" else ():
-        values = tuple(float(e.value) for e in one.parameters.values())
-        placed = PlacedEffect(one.name, one.place, values)
-        general = {other.key for other in grown_from(placed)}
-        if placed.key == key:
-            others = {other.key for other in one.confusable_with} - general
-            return True, not others
+        if f"{one.name}@{one.place}" == key:
+            return True, not one.confusable_with
     return False, False
 
 

@@ -14,7 +14,7 @@ from diagnosis.residuals.small_mismatch.usual_errors import is_usual
 from diagnosis.residuals.ties import groups_of
 from diagnosis.search.fitting import FittedModel
 from diagnosis.search.many.pruning import gains_of_each
-from diagnosis.search.result import SearchResult
+from diagnosis.search.result import Judged, SearchResult
 from diagnosis.verdict import Found, VerdictKind, When
 
 TIED_NATS = 10.0
@@ -38,32 +38,49 @@ def alike(
     """Effects that may be true instead of `placed`, in these or in any recordings.
 
     They could replace it in the winning model and explain as much, or are its twins.
+    More general forms of it always explain as much, and are left out.
     """
     winner = found.winner
     others: dict[str, PlacedEffect] = {}
     if winner is not None and placed.key in winner.keys:
-        rest = winner.keys - {placed.key}
+        rest, same = winner.keys - {placed.key}, {placed.key, *containing(placed)}
         for judged in found.best[found.chosen]:
             own = [other for other in judged.model if other.key not in rest]
-            other = len(own) == 1 and own[0].key != placed.key
+            other = len(own) == 1 and own[0].key not in same
             if other and found.worse(judged) <= TIED_NATS:
                 others[own[0].key] = PlacedEffect(own[0].name, own[0].place)
     twins = effect(placed.name).twins(plant, placed.place)
     return tuple(dict.fromkeys((*others.values(), *twins)))
 
 
+def rivals(found: SearchResult) -> list[Judged]:
+    """Other models with as many effects as the winner that explain the data as well.
+
+    The most plausible one is first. Models that only have more general forms of the
+    winner's effects are none: they always explain as much.
+    """
+    winner = found.winner
+    if winner is None:
+        return []
+    same = {key for placed in winner.model for key in containing(placed)} | winner.keys
+    return [
+        one
+        for one in found.best[found.chosen]
+        if found.worse(one) <= TIED_NATS and not one.keys <= same
+    ]
+
+
 def alternatives(
     found: SearchResult, kind: VerdictKind
 ) -> tuple[tuple[PlacedEffect, ...], ...]:
-    """Other models with as many effects as the winner that explain the data as well.
+    """The effects of the winner's rivals: of models that explain the data as well.
 
     For the verdict "not_identifiable" the winner is included.
     """
     winner = found.winner
     if winner is None:
         return ()
-    tied = [one for one in found.best[found.chosen] if found.worse(one) <= TIED_NATS]
-    every = {one.keys: one.model for one in (winner, *tied)}
+    every = {one.keys: one.model for one in (winner, *rivals(found))}
     answers = tuple(
         tuple(PlacedEffect(placed.name, placed.place) for placed in model)
         for model in every.values()

@@ -11,7 +11,7 @@ import numpy as np
 from diagnosis.conclude.answer import alike
 from diagnosis.conclude.controls import controls_of
 from diagnosis.conclude.flexible_regression import flexible_regression_errors
-from diagnosis.effects.library import effect, keys_within
+from diagnosis.effects.library import containing, effect, keys_within
 from diagnosis.residuals.channels import MORE_THAN_NOISE, channel_unit
 from diagnosis.residuals.predictor import Model, Predictor
 from diagnosis.search.chance import in_standard_errors, independent_blocks
@@ -104,6 +104,7 @@ def _controls(
     """The wrong models with which a model is compared, by their names."""
     others = [alike(searched, both.plant, placed) for placed in model]
     keys = {f"{one.name}@{one.place}" for own in others for one in own}
+    keys |= {key for placed in model for key in containing(placed)}
     found = controls_of(both, model, keys, np.random.default_rng(lot))
     return {key: one for key, one in found.items() if one is not None}
 

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from diagnosis.conclude.answer import TIED_NATS
+from diagnosis.conclude.answer import rivals
 from diagnosis.effects.library import effect
 from diagnosis.motions.shapes import MOTIONS, Motion
 from diagnosis.plant.plant import Plant
@@ -37,13 +37,15 @@ def next_experiment(
     within the range of the recordings `traces`. None if no other model is plausible, or
     if a recording has no position commands.
     """
-    rivals = _rivals(found)
-    if rivals is None or any(trace.command_rad is None for trace in traces):
+    winner, others = found.winner, rivals(found)
+    uncommanded = any(trace.command_rad is None for trace in traces)
+    if winner is None or not others or uncommanded:
         return None
+    pair = winner.model, others[0].model
     usage = Usage.of(plant, traces)
-    place = next((p.place for p in rivals[0] if p.place in plant.joints), None)
+    place = next((p.place for p in pair[0] if p.place in plant.joints), None)
     difference = {
-        motion: _difference(plant, rivals, _trace(plant, usage, motion, traces[0]))
+        motion: _difference(plant, pair, _trace(plant, usage, motion, traces[0]))
         for motion in MOTIONS
     }
     best = max(difference, key=lambda motion: difference[motion])
@@ -51,10 +53,10 @@ def next_experiment(
     gains = {"kp_nm_rad": 2 * trace.servo.kp_nm_rad}
     gains["kd_nm_s_rad"] = 0.5 * trace.servo.kd_nm_s_rad
     trace = replace(trace, servo=replace(trace.servo, **gains))
-    stiffer = _difference(plant, rivals, _trace(plant, usage, best, trace))
+    stiffer = _difference(plant, pair, _trace(plant, usage, best, trace))
     if stiffer > 2 * apart:
         words, apart = f"{best.words}; {STIFFER}", stiffer
-    names = [" with ".join(map(_words, model)) for model in rivals]
+    names = [" with ".join(map(_words, model)) for model in pair]
     size = f"{float(f'{1e3 * apart:.2g}'):g}"  # two digits, without an exponent
     why = f"there {names[0]} and {names[1]} differ by {size} mrad rms"
     return NextExperiment(words, place, why)
@@ -64,17 +66,6 @@ def _words(placed: PlacedEffect) -> str:
     """An effect with its place: "dry friction at elbow"."""
     words = effect(placed.name).words
     return f"{words.label} at {placed.place}" if words.place_kind else words.label
-
-
-def _rivals(found: SearchResult) -> tuple[Model, Model] | None:
-    """The winner and the most plausible other model; None if that one is much worse."""
-    winner = found.winner
-    if winner is None:
-        return None
-    for judged in found.best[found.chosen]:
-        if judged.keys != winner.keys and found.worse(judged) <= TIED_NATS:
-            return winner.model, judged.model
-    return None
 
 
 def _trace(plant: Plant, usage: Usage, motion: Motion, like: Trace) -> Trace:

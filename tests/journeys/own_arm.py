@@ -1,19 +1,22 @@
-"""An arm of a user's own, with logs that its user's own program wrote.
+"""An arm of a user's own, with logs that its user's own program wrote, or LeRobot.
 
-Made with MuJoCo alone: hobby servos behind three hinges, one of which rubs, and CSV
-files with degrees and milliseconds.
+Made with MuJoCo alone: hobby servos behind three hinges, one of which rubs, CSV files
+with degrees and milliseconds, and a data set of two episodes with degrees.
 """
 
 import csv
 
 import mujoco
 import numpy as np
+from foreign_files import write_lerobot
 
 KP, BACK_EMF, MAX_TORQUE, ROTOR = 24.92, 0.6662, 4.744, 0.01195
 """MX-64 at 12 V with a P gain of 32, from kt = 1.622 N m/A and R = 3.949 ohm."""
 FRICTION_NM = 0.25
 """Dry friction of the elbow, of which the URDF knows nothing."""
 STEP_S, TICK_S, DURATION_S, NOISE_RAD = 2e-5, 0.01, 8.0, 3e-4
+FRAMES_HZ = 50
+"""Rate of the data set."""
 JOINTS = ("shoulder", "elbow", "wrist")
 LINKS = ((0.22, 0.45), (0.18, 0.30), (0.10, 0.15))
 """Length [m] and mass [kg] of each link."""
@@ -47,6 +50,17 @@ def write_own_arm(folder):
         _write_log(place / f"{name}.csv", *moved)
 
 
+def write_own_episodes(folder):
+    """The data set `arm_episodes`, for `my_arm.urdf`."""
+    episodes = []
+    for seed, motion in enumerate((_ramps, _chirp)):
+        random = np.random.default_rng(10 + seed)
+        _, command, position = _moved(motion, random, 1 / FRAMES_HZ)
+        episodes.append((np.degrees(position), np.degrees(command)))
+    names = [f"{joint}.pos" for joint in JOINTS]
+    write_lerobot(folder / "arm_episodes", episodes, names, rate_hz=FRAMES_HZ)
+
+
 def _ramps(t, k):
     return 0.5 * (2 * np.abs(2 * ((t / (3.1 + 0.4 * k)) % 1) - 1) - 1)
 
@@ -62,7 +76,7 @@ def _waves(t, k):
 MOTIONS = {"ramps": _ramps, "chirp": _chirp, "tuesday": _waves}
 
 
-def _moved(motion, rng):
+def _moved(motion, rng, tick_s=TICK_S):
     """(T,) times [s], (T, 3) commands and measured angles [rad]."""
     spec = mujoco.MjSpec.from_string(arm_urdf())
     for name in JOINTS:
@@ -77,13 +91,13 @@ def _moved(motion, rng):
     model.dof_frictionloss[JOINTS.index("elbow")] = FRICTION_NM
     # by default MuJoCo's friction lets joints creep; gears do not
     model.dof_solref[:], model.dof_solimp[:, :2] = (2 * STEP_S, 1.0), (0.999, 0.9999)
-    time_s = np.arange(0, DURATION_S, TICK_S)
+    time_s = np.arange(0, DURATION_S, tick_s)
     command = np.stack([motion(time_s, k) for k in range(len(JOINTS))], axis=1)
     data, position = mujoco.MjData(model), np.empty_like(command)
     data.qpos[:] = command[0]
     for row, target in enumerate(command):
         position[row], data.ctrl[:] = data.qpos, target
-        mujoco.mj_step(model, data, nstep=round(TICK_S / STEP_S))
+        mujoco.mj_step(model, data, nstep=round(tick_s / STEP_S))
     return time_s, command, position + NOISE_RAD * rng.standard_normal(position.shape)
 
 

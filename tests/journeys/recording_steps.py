@@ -3,6 +3,13 @@
 from kinds_of_steps import NotRun, Run, Step, below, make
 from small import CONCEALED, CORRECTED, DIAGNOSED, PREDICTED, REAL, SEARCH, SMALL_STUDY
 
+
+def _bag(command: str, says: str) -> NotRun:
+    """A command on a bag of a real robot, and what a small one says in its place."""
+    reason = "real bags are not in the repository: test_real_bags_typed.py takes it"
+    return NotRun(reason, command, says=says)
+
+
 RECORDING_STEPS: dict[str, dict[str, Step]] = {
     "check.md": {
         "groundwalk record --robot so101 --motion ramps --duration 20 "
@@ -172,6 +179,31 @@ RECORDING_STEPS: dict[str, dict[str, Step]] = {
         ),
         "groundwalk convert chirp.npz --joints LF_HAA LF_HFE LF_KFE "
         "--out chirp.parquet": Run(writes=("chirp.parquet",), says="LF_KFE"),
+        "groundwalk convert arm_episodes --robot my_arm.urdf --servo mx-64@12V,P=32 "
+        "--unit deg --out episodes": Run(
+            writes=below("episodes", ("arm_episodes_episode_001.parquet",)),
+            says="50 rows a second",
+        ),
+        "groundwalk check episodes": Run(says="can be diagnosed"),
+        "groundwalk diagnose episodes --out runs/episodes": Run(
+            writes=below("runs/episodes", (*DIAGNOSED, "corrected.xml")),
+            says="dry friction at the joint elbow: torque 0.2",
+        ),
+        "groundwalk convert ur10_exciting.db3 --robot ur10_robot --out ur10.parquet": (
+            _bag("groundwalk convert arm.db3 --out arm_again.parquet", "wrote")
+        ),
+        "groundwalk check ur10.parquet": _bag("groundwalk check --help", "RECORDING"),
+        "groundwalk diagnose ur10.parquet --out runs/ur10": _bag(
+            "groundwalk diagnose --help", "--drive"
+        ),
+        "groundwalk convert panda_exciting.db3 --robot panda "
+        "--rename 'fer_*=panda_*' --out panda.parquet": _bag(
+            "groundwalk convert --help", "--rename"
+        ),
+        "groundwalk check panda.parquet": _bag("groundwalk check --help", "--servo"),
+        "groundwalk diagnose panda.parquet --out runs/panda": _bag(
+            "groundwalk diagnose --help", "--reference"
+        ),
     },
 }
 """By page and by the command as it stands there."""

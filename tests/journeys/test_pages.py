@@ -4,7 +4,7 @@ import pytest
 from foreign_things import write_foreign_things
 from kinds_of_steps import NotRun, Run
 from made_up_urdf import two_legged
-from own_arm import write_own_arm
+from own_arm import write_own_arm, write_own_episodes
 from steps import JOURNEYS, PYTHON_AFTERWARDS
 from travel import ROOT, take
 from typed_pages import PAGES, blocks, typed
@@ -22,6 +22,7 @@ def test_a_page(page, tmp_path):
     (tmp_path / "my_robot.urdf").write_text(two_legged())
     write_foreign_things(tmp_path)
     write_own_arm(tmp_path)
+    write_own_episodes(tmp_path)
     for command in typed(page):
         take(tmp_path, command, JOURNEYS[page.name][command])
     if page.name in PYTHON_AFTERWARDS:

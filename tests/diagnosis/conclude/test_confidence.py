@@ -58,6 +58,17 @@ def test_of_a_pair_each_effect_has_its_own_rivals():
     )
 
 
+def test_a_more_general_form_is_no_rival():
+    """Dry friction with a peak of any size contains dry friction without one."""
+    general = "stribeck_friction@elbow"
+    tied = found(ARM, (100.0, COULOMB), (100.0, general), (101.0, VISCOUS))
+    viscous = PlacedEffect("viscous_friction", "elbow")
+    assert alike(tied, ARM, placed(COULOMB)) == (viscous,)
+    assert alternatives(tied, "effects") == ((viscous,),)
+    other = found(ARM, (100.0, general), (101.0, COULOMB))
+    assert alike(other, ARM, placed(general)) == (COULOMB_AT,)
+
+
 def test_probability_grows_with_the_gap():
     gaps = [sure((100.0, VISCOUS), (100.0 + gap, COULOMB)) for gap in (0, 5, 50, 5000)]
     assert gaps == sorted(gaps)
