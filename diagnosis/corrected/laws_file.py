@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from diagnosis.corrected.laws.commands import LateCommand, SpeedLimit
+from diagnosis.corrected.laws.commands import LateCommand, LimitedSetPoint
 from diagnosis.corrected.laws.controller import Controller
 from diagnosis.corrected.laws.driver import CorrectedLaws
 from diagnosis.corrected.laws.dry_friction import DryFriction
@@ -33,6 +33,7 @@ from diagnosis.plant.servo import Servo
 from diagnosis.replay.controllers import CONTROLLED, derivative_lag_s
 from diagnosis.replay.dry_friction import VARYING
 from diagnosis.replay.servos import servo_laws
+from diagnosis.replay.set_points import LIMITS
 from diagnosis.residuals.predictor import Model
 from diagnosis.residuals.replays import variants_of
 from groundwalk.arrays import FloatArray
@@ -44,7 +45,7 @@ Values = list[dict[str, Any]]
 
 NAMES: Mapping[type[Law], str] = {
     LateCommand: "LATE_COMMANDS",
-    SpeedLimit: "SPEED_LIMITS",
+    LimitedSetPoint: "LIMITED_SET_POINTS",
     WeakServo: "WEAK_SERVOS",
     DryFriction: "DRY_FRICTION",
     Ripple: "RIPPLES",
@@ -74,7 +75,7 @@ FRICTION: Mapping[str, str] = {
 }
 """Arguments of the law of dry friction, by the attributes of `Joints` they are."""
 
-ON_COMMANDS = (SpeedLimit, Controller, Play, ElasticDrive, Saturation)
+ON_COMMANDS = (LimitedSetPoint, Controller, Play, ElasticDrive, Saturation)
 """Laws that need a command when it is due, so that its delay must come before them."""
 
 _IMPORTS = """from collections import deque
@@ -231,8 +232,10 @@ def _of_joint(
     own: Mapping[str, float], rotor_kg_m2: float, encoder_late_s: float
 ) -> Iterator[tuple[type[Law], dict[str, float]]]:
     """Laws at one joint, whose values are those of `Joints` by name."""
-    if np.isfinite(own["setpoint_speed_rad_s"]):
-        yield SpeedLimit, {"speed_rad_s": own["setpoint_speed_rad_s"]}
+    limits = {name.removeprefix("setpoint_"): own[name] for name in LIMITS}
+    finite = {name: value for name, value in limits.items() if np.isfinite(value)}
+    if finite:
+        yield LimitedSetPoint, finite
     if own["fade_1_s"] or own["off_share"]:
         names = ("fade_1_s", "off_share", "off_start_s", "off_end_s")
         yield WeakServo, {name: own[name] for name in names}

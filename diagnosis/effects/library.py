@@ -46,6 +46,7 @@ BUILT_IN: Mapping[str, Effect] = MappingProxyType(
             sensors.GyroBias(),
             servos.TorqueLimit(),
             servos.SpeedLimit(),
+            servos.AccelerationLimit(),
             servos.ServoGain(),
             servos.ServoDamping(),
             controllers.IntegralTerm(),

@@ -272,6 +272,49 @@ class SpeedLimit(NumberEffect, CommandedServo):
         return [(factor * speed,) for factor in (2.0, 1.4, 1.0, 0.7)]
 
 
+RISES_S = (0.05, 0.2, 0.8)
+"""Times [s] in which set-points that are tried first reach the joint's highest speed.
+From 0.02 to 2 s none is further from one of them than a factor of 2.5 (`STRETCHES`)."""
+
+
+class AccelerationLimit(NumberEffect, CommandedServo):
+    """A set-point that speeds up and slows down no faster than a limit.
+
+    Where the command jumps, it reaches it by a ramp, or trapezoid, of speed.
+
+    Source: Biagiotti and Melchiorri 2008, "Trajectory planning for automatic machines
+    and robots", section 3.2; smart servos have it as "acceleration" (Feetech, "STS
+    series memory table", address 41, 0.15 to 39 rad/s^2) or "profile acceleration".
+    """
+
+    name = "acceleration_limit"
+    shown_by = "accelerations"
+    native = False
+    threshold = True
+    quantity = "setpoint_acceleration_rad_s2"
+    combined = np.minimum
+    words = EffectWords(
+        "limited acceleration of the target",
+        "the servo of {joint} changes the speed of its target by no more than "
+        "{acceleration}, unlike {usual}",
+        "A setting in the servo's firmware that lets its target start and stop gently.",
+        "Look at the servo's setting for its acceleration or profile.",
+    )
+
+    def parameters(self, plant: Plant, place: str) -> tuple[Parameter, ...]:
+        """The limit [rad/s^2]: the motor's no-load speed in 100 s to 5 ms."""
+        scale = speed_rad_s(plant, place)
+        low, typical, high = 0.01 * scale, 5 * scale, 200 * scale
+        unit = "rad/s^2"
+        return (Parameter("acceleration", unit, low, high, np.inf, typical, True),)
+
+    def first_tries(self, plant: Plant, place: str, usage: Usage) -> list[Values]:
+        """Limits [rad/s^2] with which the joint's highest speed takes `RISES_S`."""
+        (limit,) = self.parameters(plant, place)
+        speed = float(usage.top_speed_rad_s[plant.joints.index(place)])
+        return [(max(speed / rise_s, limit.low),) for rise_s in RISES_S]
+
+
 class CommandLatency(NumberEffect):
     """The servo acts on command(t - delay): a dead time of bus and firmware.
 

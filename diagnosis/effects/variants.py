@@ -38,6 +38,7 @@ class Joints:
         `off_end_s`, times of the recording.
       max_torque_nm: torque limit, where below the nominal servo's.
       setpoint_speed_rad_s: highest speed of the servo's set-point.
+      setpoint_acceleration_rad_s2: its largest acceleration, see `replay.set_points`.
       integral_1_s: integral gain of the servo as a multiple of its stiffness.
       dead_band_rad: error below which the servo's stiffness does nothing.
       rate_share: share of the set-point's rate that the servo takes from the speed that
@@ -70,6 +71,7 @@ class Joints:
     off_end_s: FloatArray
     max_torque_nm: FloatArray
     setpoint_speed_rad_s: FloatArray
+    setpoint_acceleration_rad_s2: FloatArray
     integral_1_s: FloatArray
     dead_band_rad: FloatArray
     rate_share: FloatArray
@@ -100,6 +102,7 @@ class Joints:
             "damping_factor": 1.0,
             "max_torque_nm": np.inf,
             "setpoint_speed_rad_s": np.inf,
+            "setpoint_acceleration_rad_s2": np.inf,
             "stribeck_speed_rad_s": 0.1,
             "stribeck_exponent": 2.0,
             "spring_nm_rad": np.inf,

@@ -20,12 +20,10 @@ from diagnosis.replay.servos import (
     columns,
     first_share,
 )
+from diagnosis.replay.set_points import SetPoints
 from diagnosis.replay.transmission import BatchGaps, ElasticJoints
 from groundwalk.arrays import FloatArray
 from worlds.recordings.load import Load
-
-FAST = 1e9
-"""Speed [rad/s] that stands for no speed limit of a set-point."""
 
 
 class BatchLaws:
@@ -68,9 +66,8 @@ class BatchLaws:
         damping = self._servos.damping_nm_s_rad
         self._friction = BatchFriction(batch, plant, joints, damping, step_s)
         # most variants have none of these effects, so computing them is skipped
-        self._slow = np.isfinite(joints["setpoint_speed_rad_s"])
-        self._slews = bool(self._slow.any())
-        self._most_rad = np.minimum(joints["setpoint_speed_rad_s"], FAST) * step_s
+        self._set_points = SetPoints(joints, step_s)
+        self._slews = bool(self._set_points.limited.any())
         self._stiff = np.isinf(joints["spring_nm_rad"])
         loose = bool(joints["gap_rad"].any())
         self._gaps = BatchGaps(joints, self._servos.law, step_s) if loose else None
@@ -85,7 +82,6 @@ class BatchLaws:
             for effect, values in variants.torques.items()
         ]
         self._adds = bends or bool(self._torques)
-        self._setpoint: FloatArray | None = None
         # bind before the first step: a later view would lag by one step
         self._force = self._bind("actuator_force")
         self._applied = self._bind("qfrc_applied")
@@ -105,9 +101,8 @@ class BatchLaws:
         start, which friction remembers, and `rising` their accelerations (j,) [rad/s^2]
         there, which tell the torques of integral terms; None where nothing is known.
         """
-        self._setpoint = None
-        if asked_rad is not None:
-            self._setpoint = asked_rad - self.joints["offset_rad"]
+        offset = self.joints["offset_rad"]
+        self._set_points.begin(None if asked_rad is None else asked_rad - offset)
         if self._gaps is not None:
             self._gaps.begin()
         if self._presliding is not None:
@@ -141,9 +136,10 @@ class BatchLaws:
             seen_rad = self.encoder_rad()
             asked_rad = self._servos.equal(mean_rad, ends, seen_rad, velocity)
         if self._slews:
-            slewed_rad = self._slewed(mean_rad, ends or (mean_rad, mean_rad))
-            asked_rad = np.where(self._slow, slewed_rad, asked_rad)
-            mean_rad = np.where(self._slow, slewed_rad, mean_rad)
+            both, limited = ends or (mean_rad, mean_rad), self._set_points.limited
+            slewed_rad = self._set_points.through(first_share(mean_rad, both), both)
+            asked_rad = np.where(limited, slewed_rad, asked_rad)
+            mean_rad = np.where(limited, slewed_rad, mean_rad)
         if self._servos.fades:
             self._servos.fade(time_s)
         if self._friction.varies:
@@ -261,19 +257,6 @@ class BatchLaws:
     def _expand(self, name: str) -> FloatArray:
         """View of a field of `MjModel` with a row per simulation, to be changed."""
         return np.asarray(self._batch.expand(name))
-
-    def _slewed(self, asked_rad: FloatArray, ends: Ends) -> FloatArray:
-        """(n R, j) mean set-points of a step that follow targets at limited speed."""
-        if self._setpoint is None:
-            self._setpoint = ends[0].copy()
-        first = first_share(asked_rad, ends)
-        mean = np.zeros_like(asked_rad)
-        for share, target in zip((first, 1 - first), ends, strict=True):
-            way = share * self._most_rad
-            change = np.minimum(np.maximum(target - self._setpoint, -way), way)
-            mean += share * (self._setpoint + change / 2)
-            self._setpoint = self._setpoint + change
-        return mean
 
     def _carry(self, plant: Plant, loads: Sequence[Mapping[str, Load]]) -> None:
         """Add the loads of R runs to the bodies of their simulations."""

@@ -30,6 +30,10 @@ def servo_torque_nm(
     return np.asarray(held - back_emf * speed_rad_s)
 
 
+PLANNED = 20
+"""Parts of a step in which a set-point with a limited acceleration is planned."""
+
+
 class Servos:
     """Gains, limits and faults of a robot's servos, and the set-points they follow.
 
@@ -39,6 +43,7 @@ class Servos:
     Attributes:
       kp_nm_rad, kd_nm_s_rad, back_emf_nm_s_rad, max_torque_nm: see `servo_torque_nm`.
       max_speed_rad_s: highest speed of a set-point that follows its command.
+      max_acceleration_rad_s2: its largest acceleration, if not infinite.
       fade_1_s: share of kp that is lost in each second of the recording.
       offset_rad: constant encoder error, measured minus true angle.
       late_s: time by which a joint's reading is older than the others'; the servo's own
@@ -60,6 +65,7 @@ class Servos:
         self.back_emf_nm_s_rad = plant.back_emf_nm_s_rad.copy()
         self.max_torque_nm = plant.max_torque_nm.copy()
         self.max_speed_rad_s = np.full(j, np.inf)
+        self.max_acceleration_rad_s2 = np.full(j, np.inf)
         self.fade_1_s = np.zeros(j)
         self.offset_rad = np.zeros(j)
         self.late_s = np.zeros(j)
@@ -70,6 +76,7 @@ class Servos:
         self.leaks: list[tuple[int, int, float]] = []
         self._step_s = step_s
         self._target: FloatArray | None = None
+        self._target_rad_s = np.zeros(j)
         self._summed_rad = np.zeros(j)
         self._lagging: FloatArray | None = None
 
@@ -87,7 +94,8 @@ class Servos:
 
     @cached_property
     def _slews(self) -> bool:
-        return bool(np.isfinite(self.max_speed_rad_s).any())
+        limits = self.max_speed_rad_s, self.max_acceleration_rad_s2
+        return bool(np.isfinite(limits).any())
 
     @cached_property
     def remember(self) -> bool:
@@ -167,12 +175,49 @@ class Servos:
         if self._target is None:
             self._target = target
         most, now = self.max_speed_rad_s * self._step_s, self._target
+        gentle = np.isfinite(self.max_acceleration_rad_s2)
+        if gentle.any():
+            planned = self._planned(target)
         change = target - now
         self._target = now + np.clip(change, -most, most)
         # At its speed limit a set-point moves all through the step. One below the limit
         # is a target, which is the same from the step's start on.
         middle = (now + self._target) / 2
-        return np.where(np.abs(change) > most, middle, self._target)
+        found = np.where(np.abs(change) > most, middle, self._target)
+        if gentle.any():
+            found = np.where(gentle, (now + planned) / 2, found)
+            self._target = np.where(gentle, planned, self._target)
+        return found
+
+    def _planned(self, target: FloatArray) -> FloatArray:
+        """(j,) set-points a step later, on trapezoids of speed to (j,) targets."""
+        assert self._target is not None
+        planned = self._target.copy()
+        for j in np.flatnonzero(np.isfinite(self.max_acceleration_rad_s2)).tolist():
+            at, speed = float(planned[j]), float(self._target_rad_s[j])
+            for _ in range(PLANNED):
+                at, speed = self._planned_further(j, at, speed, float(target[j]))
+            planned[j], self._target_rad_s[j] = at, speed
+        return planned
+
+    def _planned_further(
+        self, j: int, at: float, speed: float, target: float
+    ) -> tuple[float, float]:
+        """A set-point and its speed a small part of a step later.
+
+        It brakes as soon as, going on for one more part, it could no longer stop at its
+        target; it rests there once both are within a part's reach.
+        """
+        part_s, most = self._step_s / PLANNED, float(self.max_acceleration_rad_s2[j])
+        far, more = target - at, most * part_s
+        if abs(far) <= more * part_s and abs(speed) <= more:
+            return target, 0.0
+        towards = math.copysign(1.0, far)
+        faster = min(towards * speed + more, float(self.max_speed_rad_s[j]))
+        after = abs(far) - (towards * speed + faster) / 2 * part_s
+        brakes = faster > 0 and faster**2 / (2 * most) > after
+        then = towards * (towards * speed - more if brakes else faster)
+        return at + (speed + then) / 2 * part_s, then
 
 
 @dataclass

@@ -4,6 +4,7 @@ from collections import deque
 from collections.abc import Mapping
 
 import mujoco
+import numpy as np
 
 from diagnosis.corrected.laws.step import Joint, Law, Step
 
@@ -40,11 +41,12 @@ class LateCommand(Law):
         step.targets[self.joint.name] = (1 - share) * newer + share * older
 
 
-class SpeedLimit(Law):
-    """A servo's set-point follows the command no faster than `speed_rad_s`.
+class LimitedSetPoint(Law):
+    """A servo's set-point follows the command at limited speed and acceleration.
 
-    The servo gets the set-point's mean over the step. (MuJoCo's pid actuator, with
-    `slewmax`, gets that of the step's end, which is half a step too early.)
+    It slows down such that it comes to rest at the command. The servo gets its mean
+    over the step. (MuJoCo's pid actuator, with `slewmax`, gets that of the step's end,
+    which is half a step too early.)
     """
 
     def __init__(
@@ -52,18 +54,31 @@ class SpeedLimit(Law):
         model: mujoco.MjModel,
         joints: Mapping[str, Joint],
         joint: str,
-        speed_rad_s: float,
+        speed_rad_s: float = float("inf"),
+        acceleration_rad_s2: float = float("inf"),
     ) -> None:
-        """Limit the speed of a joint's set-point, which starts at its first target."""
+        """Limit a joint's set-point, which starts at rest at its first target."""
         self.joint, self.speed_rad_s = joints[joint], speed_rad_s
+        self.acceleration_rad_s2 = acceleration_rad_s2
         self.set_point: float | None = None
+        self.speed = 0.0
 
     def before_step(self, step: Step) -> None:
         """Act on the step; see `Law`."""
         target = step.targets[self.joint.name]
         if self.set_point is None:
             self.set_point = target
-        most = self.speed_rad_s * step.seconds
-        change = min(max(target - self.set_point, -most), most)
+        error, before = target - self.set_point, self.speed
+        towards, far = (-1.0 if error < 0 else 1.0), abs(error)
+        most = self.acceleration_rad_s2 * step.seconds
+        if np.isinf(most):
+            self.speed = towards * min(far / step.seconds, self.speed_rad_s)
+            change = self.speed * step.seconds
+        else:  # what is left must do for this step and for slowing down
+            left = max(far - towards * before * step.seconds / 2, 0.0)
+            root = np.sqrt((most / 2) ** 2 + 2 * self.acceleration_rad_s2 * left)
+            wanted = towards * min(float(root) - most / 2, self.speed_rad_s)
+            self.speed = min(max(wanted, before - most), before + most)
+            change = (before + self.speed) / 2 * step.seconds
         step.targets[self.joint.name] = self.set_point + change / 2
         self.set_point += change

@@ -41,6 +41,7 @@ ALONE = [
     PLAY,
     ("joint_elasticity", KNEE, 40.0, 0.1),
     ("speed_limit", KNEE, 0.8),
+    ("acceleration_limit", KNEE, 8.0),
     ("servo_fade", ARM, 0.05),
     ("servo_off", KNEE, 0.8, 0.503, 0.3),
     ("external_force", "LTibia", 3.0, 0.0, 5.0, 0.503, 0.3),
@@ -55,6 +56,9 @@ ALONE = [
 
 TOGETHER = {
     "late and slow": [LATE, ("speed_limit", KNEE, 0.8)],
+    "late, slow and gentle": [
+        LATE, ("speed_limit", KNEE, 0.8), ("acceleration_limit", KNEE, 5.0),
+    ],
     "late, with play, a wrong zero and a constant torque": [
         LATE, PLAY, ("encoder_offset", KNEE, 0.1), ("torque_offset", KNEE, 0.5),
     ],

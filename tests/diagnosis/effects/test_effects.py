@@ -39,6 +39,7 @@ PARAMETERS = {
     "gyro_bias": "x y z",
     "torque_limit": "torque",
     "speed_limit": "speed",
+    "acceleration_limit": "acceleration",
     "servo_gain": "factor",
     "servo_damping": "factor",
     "integral_term": "time",
@@ -230,6 +231,7 @@ def test_where_effects_may_be():
     assert driven == {
         *("backlash", "servo_gain", "servo_damping", "servo_fade", "servo_off"),
         *("speed_limit", "joint_elasticity", "load_friction"),
+        "acceleration_limit",
         *("dead_band", "error_derivative"),
     }
     assert places["torque_limit"] == ("hip", "knee")
@@ -259,6 +261,7 @@ def test_only_joints_that_are_driven_have_a_motor():
 def test_where_effects_cannot_be():
     fixed, bare = walker(base="fixed"), [trace()]
     none = ("command_latency", "gyro_bias", "speed_limit", "contact_friction")
+    none = (*none, "acceleration_limit")
     controllers = ("integral_term", "dead_band", "error_derivative")
     for name in (
         *none,

@@ -117,6 +117,37 @@ def test_the_set_point_slews():
     assert np.abs(nominal - truth).max() > 0.1
 
 
+def trapezoid(t, way, most, speed):
+    """A set-point's way after t: it speeds up, goes on, and slows down to rest."""
+    top = min(speed, np.sqrt(most * way))
+    rise_s, all_s = top / most, way / top + top / most
+    t = min(max(t, 0.0), all_s)
+    if t < rise_s:
+        return most * t**2 / 2
+    if t < all_s - rise_s:
+        return top * (t - rise_s / 2)
+    return way - most * (all_s - t) ** 2 / 2
+
+
+@pytest.mark.parametrize("speed", [np.inf, 1.0])
+def test_the_set_point_starts_and_stops_gently(speed):
+    """A triangle or a trapezoid of speed, by a closed form."""
+    command = np.where(TIME_S < 0.1, 0.0, 0.5)
+    plant = wheel()
+    effects = [("acceleration_limit", HINGE, 8.0)]
+    if np.isfinite(speed):
+        effects.append(("speed_limit", HINGE, speed))
+
+    def gentle(t):
+        return trapezoid(t - 0.1, 0.5, 8.0, speed)
+
+    truth = integrated(servo_law(gentle), TIME_S, [0, 0])[:, 0]
+    found = exact(plant, commanded(plant, command), *effects)[:, 0]
+    assert np.abs(found - truth).max() < 5e-4
+    nominal = exact(plant, commanded(plant, command))[:, 0]
+    assert np.abs(nominal - truth).max() > 0.1
+
+
 @pytest.mark.parametrize("start_s", [0.0, 5.0])
 def test_a_servo_fades_from_the_start_of_the_recordings_clock(start_s):
     """A later part of a recording finds the servo weaker."""

@@ -8,10 +8,11 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from groundwalk.errors import BadValueError, UnknownNameError
-from worlds.hidden.effects import Hidden
+from worlds.hidden.effects import KINDS, Hidden
 from worlds.hidden.limbs import limb_plant
 from worlds.hidden.plant import hidden_plant
 from worlds.hidden.run import Clock, run_hidden
+from worlds.hidden.servos import Servos
 
 M, L, OWN, G = 0.5, 0.3, 0.002, 9.81
 KP, KD = 8.0, 0.2
@@ -189,6 +190,36 @@ def test_a_set_point_that_may_not_move_fast_falls_behind():
     speed = np.diff(slow.position_rad[30:, 0]).mean() / TICK_S
     assert speed == pytest.approx(0.5 * KP / (KP + M * G * L), rel=0.1)
     assert np.diff(run(table=table).position_rad[:, 0]).max() / TICK_S > 2
+
+
+def trapezoid(t, way, most, speed):
+    """A set-point's way after t: it speeds up, goes on, and slows down to rest."""
+    top = min(speed, np.sqrt(most * way))
+    rise_s, all_s = top / most, way / top + top / most
+    t = min(t, all_s)
+    if t < rise_s:
+        return most * t**2 / 2
+    if t < all_s - rise_s:
+        return top * (t - rise_s / 2)
+    return way - most * (all_s - t) ** 2 / 2
+
+
+@pytest.mark.parametrize("speed", [np.inf, 2.0])
+@pytest.mark.parametrize("way", [1.0, -1.0])
+def test_a_set_point_starts_and_stops_gently(speed, way):
+    step_s, kind = 0.0005, KINDS["acceleration_limit"]
+    servos = Servos(hidden_plant("pendulum"), step_s)
+    kind.change_servos(servos, 0, {"acceleration": 20.0})
+    if np.isfinite(speed):
+        KINDS["speed_limit"].change_servos(servos, 0, {"speed": speed})
+    servos.set_point(np.zeros(1))
+    found = [servos.set_point(np.array([way]))[0] for _ in range(1500)]
+    wanted = [
+        np.sign(way) * trapezoid((k + 0.5) * step_s, abs(way), 20.0, speed)
+        for k in range(1500)
+    ]
+    assert np.abs(np.array(found) - wanted).max() < 2e-3
+    assert found[-1] == way
 
 
 def test_an_offset_is_seen_in_the_encoder_but_taken_out_by_the_servo():

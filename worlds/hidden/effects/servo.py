@@ -73,6 +73,28 @@ class SpeedLimit(HiddenKind):
         return {"speed": s.part(0.4, 0.9) * s.speed_rad_s}
 
 
+class AccelerationLimit(HiddenKind):
+    """The servo's set-point follows its command at a limited acceleration.
+
+    Its speed over time is a trapezoid (Biagiotti and Melchiorri 2008, "Trajectory
+    planning for automatic machines and robots", section 3.2).
+    """
+
+    name = "acceleration_limit"
+    since = 5
+    quantities = (Quantity("acceleration", "rad/s^2", 0.001),)
+    needs_motion = True
+
+    def change_servos(self, servos: Servos, joint: int, values: Values) -> None:
+        """Limit the acceleration of the servo's set-point."""
+        most = servos.max_acceleration_rad_s2
+        most[joint] = min(most[joint], values["acceleration"])
+
+    def size(self, s: Setting) -> dict[str, float]:
+        """Limit that takes 0.02 (hard to detect) to 0.5 s (easy) to the top speed."""
+        return {"acceleration": s.speed_rad_s / s.part(0.5, 0.02)}
+
+
 class ServoGain(HiddenKind):
     """The servo's stiffness is the nominal one times a factor."""
 
