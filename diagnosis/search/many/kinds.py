@@ -102,17 +102,24 @@ def _shared(plant: Plant, screen: Screen, best: Judged, name: str) -> Iterator[_
 
 
 def _grown(fit: Predictor, model: Model, without: Collection[str]) -> Iterator[Model]:
-    """The model with more general forms of a kind of effect at all of its joints."""
+    """The model with more general forms of a kind of effect at all of its joints.
+
+    Each form has values of its own at each joint, or values that joints share: where a
+    simple form needs another value at each joint, a general one may not, as of dry
+    friction that grows with the load.
+    """
     for name in sorted({placed.name for placed in model}):
         rest = tuple(placed for placed in model if placed.name != name)
-        own = [grown_from(placed) for placed in model if placed.name == name]
-        for forms in zip(*own, strict=True):
+        grown = [grown_from(placed) for placed in model if placed.name == name]
+        for forms in zip(*grown, strict=True):
             kind = effect(forms[0].name)
             places = {one.place for one in forms}
             if kind.name not in without and places <= {
                 *kind.places(fit.plant, fit.traces)
             }:
-                yield (*rest, *forms)
+                levels: tuple[Level, ...] = ("all", "motor", "each")
+                every = [tied(fit.plant, forms, level) for level in levels]
+                yield from ((*rest, *own) for own in dict.fromkeys(every))
 
 
 def _untied(plant: Plant, screen: Screen, best: Judged) -> Iterator[_Option]:

@@ -86,3 +86,9 @@ def test_what_joints_share_comes_first_and_what_is_tied_is_freed_later(predictor
     )
     forms = [{each.name for each in one} for one in apart]
     assert {"stribeck_friction"} in forms
+    values = [
+        number_of_values(one)
+        for one in apart
+        if {each.name for each in one} == {"stribeck_friction"}
+    ]
+    assert {3, 9} <= set(values)  # the same at all joints, and another one at each
