@@ -17,7 +17,7 @@ from diagnosis.effects.library import effect
 from diagnosis.residuals.predictor import Model
 from diagnosis.residuals.ties import groups_of
 from diagnosis.search.many.ebic import Ebic
-from diagnosis.search.result import Judged
+from diagnosis.search.result import Judged, keys_of
 from diagnosis.search.screening import SAME, TINY, Guess, Screen, View
 from groundwalk.arrays import FloatArray
 
@@ -87,14 +87,14 @@ class Stepwise:
         may look like the truth, and a large one not.
         """
         first = self._added(frozenset())
-        kinds = dict.fromkeys(placed.name for placed in first)
-        others = [self._added(frozenset({name})) for name in kinds]
-        found = {
-            frozenset(placed.key for placed in model): model
-            for model in (first, *others)
-            if model
-        }
-        return list(found.values())[:most]
+        found = {keys_of(first): first} if first else {}
+        for name in dict.fromkeys(placed.name for placed in first):
+            if len(found) >= most:
+                break
+            other = self._added(frozenset({name}))
+            if other:
+                found.setdefault(keys_of(other), other)
+        return list(found.values())
 
     def _added(self, without: frozenset[str]) -> Model:
         """Effects to add, but none of some names; () if none helps."""
