@@ -102,6 +102,17 @@ per radian (0.166 each, as Rhoban's BAM measured it), so 7.8 N m/rad.""",
             "stribeck_friction.coulomb_torque": Sane(0.0, 0.6, "as dry friction"),
             "stribeck_friction.extra_torque": Sane(0.0, 0.6, "as dry friction"),
             "load_friction.share": Sane(0.0, 0.7, "plastic and metal spur gears"),
+            **{
+                f"{rung}.{name}": sane
+                for rung in ("gear_friction", "gear_stribeck_friction")
+                for name, sane in {
+                    "coulomb_torque": Sane(0.0, 0.6, "as dry friction"),
+                    "extra_torque": Sane(0.0, 0.6, "as dry friction"),
+                    "share": Sane(0.0, 0.7, "plastic and metal spur gears"),
+                    "extra_share": Sane(0.0, 0.7, "plastic and metal spur gears"),
+                }.items()
+            },
+            "torque_offset.torque": Sane(-0.3, 0.3, "a tenth of the stall torque"),
             "backlash.gap": Sane(0.0, 0.03, "data sheet: 0.5 degrees, worn more"),
             "armature.inertia": Sane(0.0, 0.05, "BAM: 0.028 kg m^2"),
             "encoder_offset.offset": Sane(-0.2, 0.2, "homed by hand"),

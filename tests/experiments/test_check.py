@@ -2,12 +2,14 @@
 
 import csv
 import json
+import sys
 
 import numpy as np
 import pytest
 from html_page import Page
 from made_once import made_once
 
+from diagnosis.check import evidence
 from experiments.check import CheckRecordings, check_recordings, main
 from experiments.record import Record
 from experiments.record import main as record
@@ -46,6 +48,39 @@ def test_sizes_lie_between_noise_and_what_the_servo_can_do(found):
     # 8 N m/rad turn 0.05 mrad, a tenth of the noise, into 0.4 mN m
     assert 4e-4 < torque.value < 0.4
     assert found.noise["position.swing"].value == pytest.approx(6e-4, rel=0.5)
+
+
+KEYS = (
+    *("torque_offset@swing", "coulomb_friction@swing", "viscous_friction@swing"),
+    *("backlash@swing", "servo_gain@swing", "command_latency@commands"),
+)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("module", "name", "value"),
+    [
+        (evidence, "NEAR", 1.1),
+        (evidence, "NEAR", 1.4),
+        (evidence, "LEAST_S", 0.5),
+        (evidence, "LEAST_S", 2.0),
+        (evidence, "MILDEST", 1),
+        (evidence, "MILDEST", 4),
+        (evidence, "POWERS", (0.25, 6.0)),
+        (evidence, "POWERS", (0.7, 2.2)),
+        (sys.modules["diagnosis.check.check"], "SIMULATED_S", 4.0),
+        (sys.modules["diagnosis.check.check"], "SIMULATED_S", 16.0),
+    ],
+)
+def test_a_factor_of_two_hardly_changes_sizes(
+    recordings, found, monkeypatch, module, name, value
+):
+    """Of a constant, of its distance from 1, or of an exponent about 1."""
+    monkeypatch.setattr(module, name, value)
+    other = check_recordings(checked(recordings, "multisine"))
+    for key in KEYS:
+        size, usual = other.size(key).told.value, found.size(key).told.value
+        assert size == pytest.approx(usual, rel=0.35), key
 
 
 @pytest.mark.slow
