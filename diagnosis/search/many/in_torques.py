@@ -9,7 +9,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from diagnosis.effects.library import all_effects
+from diagnosis.effects.library import all_effects, effect
 from diagnosis.residuals.channels import MORE_THAN_NOISE, shared_channels
 from diagnosis.residuals.predictor import Model
 from diagnosis.residuals.torques.asked_torques import asked_motions
@@ -63,11 +63,13 @@ def _free(fits: Fits, model: Model) -> Model:
 def _believed(fits: Fits, best: Judged, other: Judged) -> Judged:
     """The other model if the evidence for it is strong, else the best one.
 
-    Recordings weigh as suits what the best one leaves in them.
+    Any evidence suffices if the best one doubts servos' gains as well. Recordings weigh
+    as suits what the best one leaves in them.
     """
     best, other = fits.exact(best), fits.fitted(other.model)
     ebic = fits.ebic(best)
-    if ebic.score(other) < ebic.score(best) - STRONG:
+    doubts = any(effect(placed.name).scales_servo for placed in best.model)
+    if ebic.score(other) < ebic.score(best) - (0.0 if doubts else STRONG):
         return fits.exact(other)
     return best
 

@@ -13,7 +13,7 @@ from diagnosis.effects.library import all_effects
 from diagnosis.residuals.bursts import push_intervals
 from diagnosis.residuals.predictor import Model
 from diagnosis.residuals.signatures import Signature, signatures
-from diagnosis.residuals.ties import groups_of
+from diagnosis.residuals.ties import group_of, groups_of
 from diagnosis.search.candidates import Candidates
 from diagnosis.search.fitting import ran_into_bound
 from diagnosis.search.many.fits import Fits
@@ -23,6 +23,9 @@ from diagnosis.search.result import Judged
 from diagnosis.search.screening import Screen
 from diagnosis.search.spread import FEWEST
 
+MOST_REPLACED = 3
+"""Most times that a search goes on after kinds of effects were replaced by others."""
+
 FINISHED = 3
 """Number of models in a round that are fitted to the end, until one is not worse and
 has no new effect on a bound."""
@@ -31,9 +34,17 @@ has no new effect on a bound."""
 def shared_first(fits: Fits, first: Model = ()) -> Judged:
     """The best model; without effects if none explains much at all joints.
 
-    The search begins with the effects of the model `first`.
+    The search begins with the effects of the model `first`. Where other kinds of
+    effects fit better in the end, it goes on from these: more may be missing beside
+    them than beside what stood for them.
     """
-    return _replaced(fits, fits.improved("all joints", _larger, first))
+    best = fits.improved("all joints", _larger, first)
+    for _ in range(MOST_REPLACED):
+        other = _replaced(fits, best)
+        if {*map(group_of, other.model)} == {*map(group_of, best.model)}:
+            break
+        best = fits.improved("all joints, replaced", _larger, other.model)
+    return best
 
 
 def _larger(fits: Fits, best: Judged) -> Judged | None:

@@ -82,11 +82,22 @@ def test_stated_gains_are_doubted_for_strong_evidence():
         }
 
 
-def chosen(monkeypatch, *, better_by, stuck=(), none=1e3):
-    """Which of two models a search ends with, by their scores."""
+class Name(str):
+    """An effect of which only the name counts."""
+
+    @property
+    def name(self):
+        return self
+
+
+def chosen(monkeypatch, *, better_by, stuck=(), none=1e3, scaling=("doubted",)):
+    """Which of two models a search ends with, by their scores.
+
+    Effects of the names `scaling` scale a servo's torque.
+    """
     scores = {"none": none, "declared": 100.0, "doubted": 100.0 - better_by}
     judged = {
-        name: SimpleNamespace(model=() if name == "none" else (name,), fit=None)
+        name: SimpleNamespace(model=() if name == "none" else (Name(name),), fit=None)
         for name in scores
     }
 
@@ -104,6 +115,8 @@ def chosen(monkeypatch, *, better_by, stuck=(), none=1e3):
     )
     own = "diagnosis.search.many.in_torques"
     models = [("declared",), ("doubted",)]
+    kinds = {one: SimpleNamespace(scales_servo=one in scaling) for one in scores}
+    monkeypatch.setattr(f"{own}.effect", kinds.__getitem__)
     monkeypatch.setattr(f"{own}.in_asked_torques", lambda fits: models)
     monkeypatch.setattr(f"{own}.ran_into_bound", lambda fit, one: one in stuck)
     monkeypatch.setattr(f"{own}.shared_first", lambda fits, first: judged[first[0]])
@@ -115,6 +128,12 @@ def chosen(monkeypatch, *, better_by, stuck=(), none=1e3):
 def test_weak_evidence_against_stated_gains_does_not_count(monkeypatch):
     assert chosen(monkeypatch, better_by=0.9 * STRONG) == ("declared",)
     assert chosen(monkeypatch, better_by=1.1 * STRONG) == ("doubted",)
+
+
+def test_where_both_doubt_stated_gains_any_evidence_counts(monkeypatch):
+    both = "declared", "doubted"
+    assert chosen(monkeypatch, better_by=0.1, scaling=both) == ("doubted",)
+    assert chosen(monkeypatch, better_by=-0.1, scaling=both) == ("declared",)
 
 
 def test_what_runs_into_a_bound_is_left_out_of_a_first_model(monkeypatch):
