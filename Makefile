@@ -37,7 +37,7 @@ help:
 	@echo "make walk     tune a gait in simulation and try it in both worlds (into runs/)"
 	@echo "make test     run the tests that take seconds (below eight minutes on two cores)"
 	@echo "make slow-tests  run the others: whole diagnoses, searches and studies"
-	@echo "make journeys run what the pages tell people to type (about four minutes on two cores)"
+	@echo "make journeys run what the pages tell people to type (a quarter of an hour on two cores)"
 	@echo "make lint     check style, types and imports"
 	@echo "make results  write docs/results again (many hours; one page: make results-NAME)"
 	@echo "make bench    measure speed"
