@@ -17,6 +17,7 @@ from diagnosis.effects import (
     ripple,
     sensors,
     servos,
+    set_points,
 )
 from diagnosis.effects.effect import Effect
 from diagnosis.effects.parts import PlacedEffect
@@ -45,8 +46,8 @@ BUILT_IN: Mapping[str, Effect] = MappingProxyType(
             joints.EncoderOffset(),
             sensors.GyroBias(),
             servos.TorqueLimit(),
-            servos.SpeedLimit(),
-            servos.AccelerationLimit(),
+            set_points.SpeedLimit(),
+            set_points.AccelerationLimit(),
             servos.ServoGain(),
             servos.ServoDamping(),
             controllers.IntegralTerm(),

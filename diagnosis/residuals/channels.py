@@ -67,6 +67,14 @@ class Channels:
         """Rms error of the time stamps [s], that of a row included."""
         return float(np.hypot(self.own_jitter_s, self.common_jitter_s))
 
+    def read(self, exact: FloatArray, random: np.random.Generator) -> FloatArray:
+        """(rows, c) exact values with drawn noise, rounded as sensors round them."""
+        quantum = np.sqrt(12) * np.broadcast_to(self.rounding, self.noise.shape)
+        white = np.sqrt(np.maximum(self.noise**2 - quantum**2 / 12, 0.0))
+        read = exact + white * random.standard_normal(exact.shape)
+        steps = np.where(quantum > 0, quantum, 1.0)
+        return np.asarray(np.where(quantum > 0, np.round(read / steps) * steps, read))
+
     def widened(self, left: FloatArray) -> "Channels":
         """The channels with their noise (c,) times as large, and the same floor."""
         return replace(self, noise=self.noise * left)

@@ -319,14 +319,9 @@ class Predictor(Doubted):
 
     def drawn(self, random: np.random.Generator) -> FloatArray:
         """(rows, c) errors of a right model [noise]: drawn noise, and rounding."""
-        channels = self.channels
         exact = self.predict([()])[0]
-        quantum = np.sqrt(12) * np.broadcast_to(channels.rounding, channels.noise.shape)
-        white = np.sqrt(np.maximum(channels.noise**2 - quantum**2 / 12, 0.0))
-        read = exact + white * random.standard_normal(exact.shape)
-        steps = np.where(quantum > 0, quantum, 1.0)
-        read = np.where(quantum > 0, np.round(read / steps) * steps, read)
-        return np.asarray(np.nan_to_num((read - exact) / channels.noise))
+        errors = self.channels.read(exact, random) - exact
+        return np.asarray(np.nan_to_num(errors / self.channels.noise))
 
     def residual_of(self, errors: FloatArray) -> FloatArray:
         """(N,) residual that errors (rows, c) [noise] of a right model leave.

@@ -75,7 +75,7 @@ KEYS = (
 def test_a_factor_of_two_hardly_changes_sizes(
     recordings, found, monkeypatch, module, name, value
 ):
-    """Of a constant, of its distance from 1, or of an exponent about 1."""
+    """A constant is changed, or its distance from 1, or an exponent about 1."""
     monkeypatch.setattr(module, name, value)
     other = check_recordings(checked(recordings, "multisine"))
     for key in KEYS:

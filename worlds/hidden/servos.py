@@ -98,6 +98,13 @@ class Servos:
         return bool(np.isfinite(limits).any())
 
     @cached_property
+    def _gentle(self) -> list[int]:
+        """Columns of the joints whose set-points have a limited acceleration."""
+        return [
+            int(j) for j in np.flatnonzero(np.isfinite(self.max_acceleration_rad_s2))
+        ]
+
+    @cached_property
     def remember(self) -> bool:
         """Whether torques depend on earlier set-points, not on the present one only."""
         return self._controls or self._slews or self._leads
@@ -175,35 +182,24 @@ class Servos:
         if self._target is None:
             self._target = target
         most, now = self.max_speed_rad_s * self._step_s, self._target
-        gentle = np.isfinite(self.max_acceleration_rad_s2)
-        if gentle.any():
-            planned = self._planned(target)
         change = target - now
         self._target = now + np.clip(change, -most, most)
         # At its speed limit a set-point moves all through the step. One below the limit
         # is a target, which is the same from the step's start on.
         middle = (now + self._target) / 2
         found = np.where(np.abs(change) > most, middle, self._target)
-        if gentle.any():
-            found = np.where(gentle, (now + planned) / 2, found)
-            self._target = np.where(gentle, planned, self._target)
+        for j in self._gentle:
+            at, speed = float(now[j]), float(self._target_rad_s[j])
+            for _ in range(PLANNED):
+                at, speed = self._planned(j, at, speed, float(target[j]))
+            self._target[j], self._target_rad_s[j] = at, speed
+            found[j] = (now[j] + at) / 2
         return found
 
-    def _planned(self, target: FloatArray) -> FloatArray:
-        """(j,) set-points a step later, on trapezoids of speed to (j,) targets."""
-        assert self._target is not None
-        planned = self._target.copy()
-        for j in np.flatnonzero(np.isfinite(self.max_acceleration_rad_s2)).tolist():
-            at, speed = float(planned[j]), float(self._target_rad_s[j])
-            for _ in range(PLANNED):
-                at, speed = self._planned_further(j, at, speed, float(target[j]))
-            planned[j], self._target_rad_s[j] = at, speed
-        return planned
-
-    def _planned_further(
+    def _planned(
         self, j: int, at: float, speed: float, target: float
     ) -> tuple[float, float]:
-        """A set-point and its speed a small part of a step later.
+        """A set-point and its speed a small part of a step later, on a trapezoid.
 
         It brakes as soon as, going on for one more part, it could no longer stop at its
         target; it rests there once both are within a part's reach.

@@ -3,7 +3,7 @@
 import pytest
 from hidden_arm import fitted, floor, plant, predictor_of, recorded
 
-from diagnosis.effects import servos
+from diagnosis.effects import set_points
 from diagnosis.effects.library import effect
 from diagnosis.traces.usage import Usage
 
@@ -71,6 +71,6 @@ def test_it_is_not_taken_for_its_neighbours(effects, right):
 
 @pytest.mark.parametrize("factor", [0.5, 2.0])
 def test_the_limits_that_are_tried_may_be_twice_or_half_as_large(factor, monkeypatch):
-    some = tuple(factor * rise_s for rise_s in servos.RISES_S)
-    monkeypatch.setattr(servos, "RISES_S", some)
+    some = tuple(factor * rise_s for rise_s in set_points.RISES_S)
+    monkeypatch.setattr(set_points, "RISES_S", some)
     assert best_fit(truth(6.0)).model[0].values == pytest.approx((6.0,), rel=0.02)
