@@ -15,6 +15,7 @@ from diagnosis.conclude.held_out_errors import (
     rms_above_floor,
 )
 from diagnosis.conclude.nuisance_found import with_unusual_ones
+from diagnosis.conclude.shared_friction import with_shared_friction
 from diagnosis.effects.library import lasts
 from diagnosis.learned import Learned
 from diagnosis.residuals.predictor import Model, Predictor
@@ -94,6 +95,7 @@ def _test_of(
         least_gain = gain_of_noise(1)
     nominal = data.learned, data.test
     if learned.noise is None and not learned.inexact and may_be_more:
+        model = with_shared_friction(data, model, least_gain)
         model, *sims = with_unusual_ones(data, model, least_gain)
         model, *sims = _settled(sims[0], sims[1], model)
     else:  # the healthy robot has it as well, or no model is exact

@@ -16,13 +16,17 @@ from groundwalk.arrays import FloatArray
 MOST = 5.0
 """Largest payload, as a multiple of the robot model's mass: a small robot may carry
 more than it weighs, and a model may state far too little."""
+
+MOST_TAKEN = 0.9
+"""Largest share of a body's mass that the robot may lack: something is left of it."""
+
 _ABOUT_ITS_CENTRE = 1
 """MuJoCo's `body_simple` for a simple body that can rotate; 2 is for one that only
 slides."""
 
 
 class PayloadMass(NumberEffect, BodyEffect):
-    """A point mass m at a body's centre of mass.
+    """A point mass m at a body's centre of mass; below 0 the robot lacks it.
 
     Centre of mass and inertia about it stay as they are, since a point mass at distance
     r adds m r^2 (Featherstone 2008, "Rigid body dynamics algorithms", section 2.13). In
@@ -37,15 +41,20 @@ class PayloadMass(NumberEffect, BodyEffect):
     words = EffectWords(
         "extra mass",
         "{body} carries {mass} {lacking}",
-        "A load, a battery or a cable that the model does not know of.",
+        "A load, a battery or a cable that the model does not know of, or that it has "
+        "and the robot not.",
         "Weigh the part with its cables and screws.",
+        below="{body} is lighter than {usual}, by {mass}",
     )
 
     def parameters(self, plant: Plant, place: str) -> tuple[Parameter, ...]:
-        """The mass [kg], at most `MOST` times that of the whole robot."""
+        """The mass [kg], at most `MOST` times that of the whole robot.
+
+        Of what the body itself has, the robot may lack `MOST_TAKEN`.
+        """
         own = float(plant.model.body(place).mass[0])
-        high = MOST * mass_kg(plant)
-        return (Parameter("mass", "kg", 0.0, high, 0.0, 0.2 * own),)
+        low, high = -MOST_TAKEN * own, MOST * mass_kg(plant)
+        return (Parameter("mass", "kg", low, high, 0.0, 0.2 * own),)
 
     def tolerance(self, plant: Plant, place: str) -> float:
         """1 % of the body's own mass: what CAD says of a body without cables."""

@@ -81,6 +81,8 @@ class EffectWords(NamedTuple):
         recordings of the healthy robot are the reference.
       meaning: explanation for a reader of the report, in one sentence.
       advice: what to look at or to do at the robot, in one sentence; "" for nothing.
+      below: clause where the first value is below 0, which is said without its sign; ""
+        for the same as `finding`.
 
     Example:
       >>> EffectWords("water drag", "{joint} has {coefficient} of drag {lacking}", "")
@@ -90,6 +92,7 @@ class EffectWords(NamedTuple):
     finding: str
     meaning: str
     advice: str = ""
+    below: str = ""
 
     @property
     def place_kind(self) -> str:

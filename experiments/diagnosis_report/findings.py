@@ -8,7 +8,7 @@ from itertools import groupby, pairwise
 import numpy as np
 
 from diagnosis.effects import effect as kind_of
-from diagnosis.verdict import Found, Pulse
+from diagnosis.verdict import Estimate, Found, Pulse
 from experiments.diagnosis_report.numbers import estimate_text, percent
 from experiments.diagnosis_report.place_words import place_words
 
@@ -79,10 +79,13 @@ def finding(effect: Found, changed: bool = False) -> str:
     With `changed` it is called a change since the reference recordings, not physics
     that the sim lacks.
     """
-    words = kind_of(effect.name).words
+    words, values = kind_of(effect.name).words, dict(effect.parameters)
+    clause, first = words.finding, next(iter(values), None)
+    if first and words.below and values[first].value < 0:
+        clause, values[first] = words.below, _negative(values[first])
     numbers = {
         name: f"about {estimate_text(one)}"
-        for name, one in effect.parameters.items()
+        for name, one in values.items()
         if abs(one.value) > SHOWN * (one.high - one.low)
     }
     known = defaultdict(lambda: "an unknown amount", numbers)
@@ -90,7 +93,7 @@ def finding(effect: Found, changed: bool = False) -> str:
     known["body"] = place_words(effect.place, "body")
     known["lacking"] = "that was not there before" if changed else "that the sim lacks"
     known["usual"] = "before" if changed else "in the sim"
-    clause = words.finding.format_map(known)
+    clause = clause.format_map(known)
     course, start_s, end_s = effect.when.kind, effect.when.start_s, effect.when.end_s
     if course == "always":
         return clause
@@ -98,6 +101,10 @@ def finding(effect: Found, changed: bool = False) -> str:
     only = effect.when.recording
     where = f" of {only} only" if only else ""
     return f"{clause}, {doing} {start_s:.3g} to {end_s:.3g} s{where}"
+
+
+def _negative(one: Estimate) -> Estimate:
+    return replace(one, value=-one.value, low=-one.high, high=-one.low)
 
 
 def parameter_rows(effect: Found) -> list[tuple[str, str]]:

@@ -35,9 +35,11 @@ def test_a_right_model_lacks_nothing(noise_rad):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("noise_rad", "kg"), [(1e-5, 1.0), (1e-4, 1.0), (1e-4, 12.0)])
+@pytest.mark.parametrize(
+    ("noise_rad", "kg"), [(1e-5, 1.0), (1e-4, 1.0), (1e-4, 12.0), (1e-4, -0.5)]
+)
 def test_a_payload_is_found_at_its_link(noise_rad, kg):
-    """The last one is heavier than the whole arm."""
+    """One is heavier than the whole arm; the last one is in the model only."""
     verdict = verdict_of(moved(loaded(kg, "lower"), noise_rad=noise_rad))
     assert verdict.kind == "effects"
     ((place, (mass_kg,)),) = found(verdict).items()

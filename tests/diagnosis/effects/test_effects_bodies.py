@@ -243,3 +243,12 @@ def test_a_payload_may_be_heavier_than_the_robot_that_carries_it():
     own = [float(plant.model.body(name).mass[0]) for name in ("upper", "lower")]
     (mass,) = effect("payload_mass").parameters(plant, "lower")
     assert mass.high > 3 * sum(own)
+
+
+def test_a_robot_may_lack_a_part_of_a_body_but_not_all_of_it():
+    plant = arm()
+    (mass,) = effect("payload_mass").parameters(plant, "arm")
+    assert mass.low == pytest.approx(-0.9 * MASS_KG)
+    lighter = changed(plant, ("payload_mass", "arm", -0.5 * MASS_KG))
+    whole, half = (torque_and_inertia(lighter, row)[0] for row in (0, 1))
+    assert half == pytest.approx(0.5 * whole)

@@ -48,6 +48,7 @@ def searched(*effects, rules=LEAN):
     [
         ("coulomb_friction", "shoulder", 0.4),
         ("payload_mass", "lower", 0.2),
+        ("payload_mass", "lower", -0.2),
         ("command_latency", "commands", 0.007),
     ],
 )

@@ -113,6 +113,17 @@ def test_findings_leave_nothing_open(name, changed):
     assert "an unknown amount" in without
 
 
+def test_mass_that_the_robot_lacks_is_said_without_a_sign():
+    lighter = Estimate(-0.2, -0.3, -0.1, "kg")
+    text = finding(Found("payload_mass", "lever", {"mass": lighter}, 0.9))
+    wanted = (
+        "the body lever is lighter than in the sim, by about 0.20 kg (0.10 to 0.30)"
+    )
+    assert text == wanted
+    more = {"mass": Estimate(0.2, 0.1, 0.3, "kg")}
+    assert "carries about 0.20 kg" in finding(Found("payload_mass", "lever", more, 0.9))
+
+
 def test_unknown_effects_have_no_words():
     assert effect("backlash").words.label == "play (backlash)"
     with pytest.raises(UnknownNameError, match="did you mean 'backlash'"):

@@ -99,6 +99,7 @@ SMOOTH = [
     ([Hidden("servo_damping", JOINT, {"factor": 1.3})], {"kd": 1.3 * KD}),
     ([Hidden("armature", JOINT, {"inertia": 0.02})], {"armature": 0.02}),
     ([Hidden("payload_mass", LINK, {"mass": 0.1})], {"mass": 0.1}),
+    ([Hidden("payload_mass", LINK, {"mass": -0.1})], {"mass": -0.1}),
     ([Hidden("com_offset", LINK, {"x": 0, "y": 0, "z": 0.03})], {"z": 0.03}),
     (
         [Hidden("joint_spring", JOINT, {"stiffness": 0.5, "rest": -0.2})],
@@ -257,6 +258,11 @@ def test_an_elastic_joint_sags_behind_its_encoder():
     sag = run(soft, CALM, start=0.5, table=level)
     q, motor = sag.position_rad[-1, 0], sag.encoder_rad[-1, 0]
     assert 50.0 * (motor - q) == pytest.approx(M * G * L * np.sin(q), rel=0.02)
+
+
+def test_no_more_mass_is_taken_than_a_body_has():
+    with pytest.raises(BadValueError, match=f"9 kg cannot be taken .* '{LINK}'"):
+        run(Hidden("payload_mass", LINK, {"mass": -9.0}))
 
 
 def test_unknown_places_and_engines_are_refused():

@@ -4,6 +4,7 @@ from typing import Any
 
 import numpy as np
 
+from groundwalk.errors import BadValueError
 from groundwalk.gravity import GRAVITY_M_S2
 from worlds.hidden.effects.kind import HiddenKind, Push, Quantity, Values
 from worlds.hidden.plant import HiddenPlant
@@ -56,16 +57,21 @@ class Armature(_OneJointOneWeight):
 
 
 class PayloadMass(_Weight):
-    """An extra point mass at a body's centre of mass."""
+    """An extra point mass at a body's centre of mass, or one that it lacks."""
 
     name = "payload_mass"
     rank = 16
     in_torques = True
-    quantities = (Quantity("mass", "kg", 0.0, 1000.0),)
+    quantities = (Quantity("mass", "kg", -1000.0, 1000.0),)
     apart = ("com_offset", "armature")
 
     def change_part(self, part: Any, values: Values) -> None:
-        """Add the payload to the body's mass."""
+        """Add the payload to the body's mass; below 0 it is taken from it."""
+        if part.mass + values["mass"] <= 0:
+            raise BadValueError(
+                f"payload_mass: {-values['mass']:g} kg cannot be taken from the body "
+                f"'{part.name}', which has {part.mass:g} kg"
+            )
         part.mass += values["mass"]
 
     def size(self, s: Setting) -> dict[str, float]:
