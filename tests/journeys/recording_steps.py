@@ -13,7 +13,7 @@ def _bag(command: str, says: str) -> NotRun:
 RECORDING_STEPS: dict[str, dict[str, Step]] = {
     "check.md": {
         "groundwalk record --robot so101 --motion ramps --duration 20 "
-        "--out slow.parquet": Run("--duration 8", writes=("slow.parquet",)),
+        "--out slow.parquet": Run(writes=("slow.parquet",)),
         "groundwalk check slow.parquet --out runs/slow": Run(
             writes=below(
                 "runs/slow",

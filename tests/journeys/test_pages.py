@@ -17,19 +17,27 @@ TYPED = [page for page in PAGES if typed(page)]
 @pytest.mark.parametrize("page", TYPED, ids=lambda page: page.name)
 def test_a_page(page, tmp_path):
     """Readers begin in a clone: what it holds of docs/results is there,
-    and so are the URDF of a robot of their own and files of other programs."""
+    and so are the URDF of a robot of their own and files of other programs.
+    What the page shows as printed is printed."""
     (tmp_path / "docs").symlink_to(ROOT / "docs")
     (tmp_path / "my_robot.urdf").write_text(two_legged())
     write_foreign_things(tmp_path)
     write_own_arm(tmp_path)
     write_own_episodes(tmp_path)
-    for command in typed(page):
-        take(tmp_path, command, JOURNEYS[page.name][command])
+    printed = [take(tmp_path, one, JOURNEYS[page.name][one]) for one in typed(page)]
+    lines = {unpadded(line) for one in printed for line in one.splitlines()}
+    shown = [line for block in blocks(page, "text") for line in block.splitlines()]
+    assert [line for line in shown if unpadded(line) not in lines | {""}] == []
     if page.name in PYTHON_AFTERWARDS:
         codes, told = blocks(page, "python"), PYTHON_AFTERWARDS[page.name]
         for code, says in zip(codes, told, strict=True):
             (tmp_path / "typed.py").write_text(code)
             take(tmp_path, "python typed.py", Run(says=says))
+
+
+def unpadded(line):
+    """A printed line, however wide the columns are that a page shows of it."""
+    return " ".join(line.split())
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)

@@ -36,7 +36,10 @@ def type_in(folder, command):
 
 
 def take(folder, command, step):
-    """Run a step of a journey in a folder, and open what it wrote."""
+    """Run a step of a journey in a folder, and open what it wrote.
+
+    Returns what it printed.
+    """
     status = 0
     if isinstance(step, NotRun):
         command, status = step.brother, step.status
@@ -50,3 +53,4 @@ def take(folder, command, step):
     assert "Traceback" not in printed, said
     assert "is not written" not in printed, said
     open_all(folder, step.writes)
+    return printed
