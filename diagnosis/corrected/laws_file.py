@@ -23,6 +23,7 @@ from diagnosis.corrected.laws.presliding import Presliding
 from diagnosis.corrected.laws.ripple import Ripple
 from diagnosis.corrected.laws.saturation import Saturation
 from diagnosis.corrected.laws.step import Joint, Law, Step
+from diagnosis.corrected.laws.supply import SupplySag
 from diagnosis.corrected.laws.weak_servo import WeakServo
 from diagnosis.effects.library import effect
 from diagnosis.effects.parts import PlacedEffect
@@ -46,6 +47,7 @@ Values = list[dict[str, Any]]
 NAMES: Mapping[type[Law], str] = {
     LateCommand: "LATE_COMMANDS",
     LimitedSetPoint: "LIMITED_SET_POINTS",
+    SupplySag: "SUPPLY_SAG",
     WeakServo: "WEAK_SERVOS",
     DryFriction: "DRY_FRICTION",
     Ripple: "RIPPLES",
@@ -195,6 +197,10 @@ def _each(
     if acts_on_commands and delay_s > 0:  # no longer the actuators' affair
         for name in plant.joints:
             yield LateCommand, {"joint": name, "delay_s": delay_s}
+    taken = variants.joints.sag_1_nm[0]
+    if taken.any():
+        lost = dict(zip(plant.joints, map(float, taken), strict=True))
+        yield SupplySag, {"lost_1_nm": lost}
     yield from _ripples(variants)
     bias = [float(one) for one in signals.gyro_bias_rad_s[0]]
     if any(bias):

@@ -18,6 +18,7 @@ from diagnosis.effects import (
     sensors,
     servos,
     set_points,
+    supply,
 )
 from diagnosis.effects.effect import Effect
 from diagnosis.effects.parts import PlacedEffect
@@ -62,6 +63,7 @@ BUILT_IN: Mapping[str, Effect] = MappingProxyType(
             joints.EndStop(),
             servos.ServoFade(),
             servos.ServoOff(),
+            supply.SupplySag(),
             ground.ContactFriction(),
             ground.ContactCompliance(),
             ground.GroundSlope(),

@@ -9,7 +9,7 @@ from diagnosis.verdict import PlacedEffect as PlacedEffect
 from groundwalk.arrays import FloatArray
 
 PlaceKind = Literal[
-    "joint", "body", "feet", "commands", "encoders", "gyroscope", "world"
+    "joint", "body", "feet", "commands", "encoders", "gyroscope", "supply", "world"
 ]
 """Kind of thing that an effect is attached to. A robot has several joints and bodies,
 but each of the other things once."""

@@ -36,6 +36,8 @@ class Joints:
       fade_1_s: share of the stiffness that is lost each second.
       off_share: share of the motor's torque that is lost from `off_start_s` to
         `off_end_s`, times of the recording.
+      sag_1_nm: share of the supply's voltage, and so of all servos' strength, that is
+        lost for each N m of the motor's torque.
       max_torque_nm: torque limit, where below the nominal servo's.
       setpoint_speed_rad_s: highest speed of the servo's set-point.
       setpoint_acceleration_rad_s2: its largest acceleration, see `replay.set_points`.
@@ -69,6 +71,7 @@ class Joints:
     off_share: FloatArray
     off_start_s: FloatArray
     off_end_s: FloatArray
+    sag_1_nm: FloatArray
     max_torque_nm: FloatArray
     setpoint_speed_rad_s: FloatArray
     setpoint_acceleration_rad_s2: FloatArray

@@ -129,6 +129,8 @@ class BatchLaws:
           ends: targets as the step begins and ends, if any jumps within it.
         """
         position, velocity = self.joint_state()
+        if self._servos.varies:
+            self._servos.weaken(time_s, self._driven_nm(velocity))
         offset = self.joints["offset_rad"]
         asked_rad = mean_rad = asked_rad - offset
         if ends is not None:
@@ -140,8 +142,6 @@ class BatchLaws:
             slewed_rad = self._set_points.through(first_share(mean_rad, both), both)
             asked_rad = np.where(limited, slewed_rad, asked_rad)
             mean_rad = np.where(limited, slewed_rad, mean_rad)
-        if self._servos.fades:
-            self._servos.fade(time_s)
         if self._friction.varies:
             self._rub(velocity, 0.0)
         if self._controllers is not None:
@@ -227,12 +227,17 @@ class BatchLaws:
     def _rub(self, velocity: FloatArray, added_nm: FloatArray | float) -> None:
         """Set dry friction by joint speed and by the torque through the gear.
 
-        That torque is the motor's minus its back-EMF, or the spring's at an elastic
-        joint; `added_nm` (n R, j) are torques of motors without a servo.
+        `added_nm` (n R, j) are torques of motors without a servo.
         """
-        driven_nm = self._force[:, self._actuators] + added_nm
+        self._friction.follow(velocity, self._driven_nm(velocity) + added_nm)
+
+    def _driven_nm(self, velocity: FloatArray) -> FloatArray:
+        """(n R, j) torques [N m] of servos through their gears, in the step before.
+
+        Each is the motor's minus its back-EMF, or the spring's at an elastic joint.
+        """
         induced_nm = np.where(self._stiff, self._servos.law["emf"] * velocity, 0.0)
-        self._friction.follow(velocity, driven_nm - induced_nm)
+        return np.asarray(self._force[:, self._actuators] - induced_nm)
 
     def _own_nm(
         self, position: FloatArray, velocity: FloatArray, time_s: FloatArray

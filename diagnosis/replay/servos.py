@@ -50,7 +50,8 @@ class BatchServos:
     Attributes:
       law: present gains and limits of the servos, arrays (rows, j): `kp` [N m/rad],
         `kd` [N m s/rad], `limit` [N m] and `emf`, the back-EMF [N m s/rad].
-      fades: whether any servo becomes weaker with time, or is off for some time.
+      varies: whether any servo becomes weaker with time or load, or is off for some
+        time; if so, call `weaken` at every step.
       least_jump_rad: (rows, j) smallest change of a target [rad] that counts as a jump.
     """
 
@@ -69,12 +70,13 @@ class BatchServos:
         """
         self._joints, self._actuators = joints, columns(plant.actuators)
         self._goes_off = bool(joints["off_share"].any())
-        self.fades = bool(joints["fade_1_s"].any()) or self._goes_off
+        self._sags = bool(joints["sag_1_nm"].any())
+        self.varies = self._goes_off or self._sags or bool(joints["fade_1_s"].any())
         self._step_s = step_s
         self._stiff = np.isinf(joints["spring_nm_rad"])
         self.law = servo_laws(servos, joints)
         self._full_kp = kp = self.law["kp"]
-        self._full_kd = self.law["kd"]
+        self._full_kd, self._full_limit = self.law["kd"], self.law["limit"]
         reach = self.law["limit"] / np.maximum(kp, LEAST_KP)
         self.least_jump_rad = JUMP * reach
         self._gain = np.asarray(batch.expand("actuator_gainprm"))
@@ -186,9 +188,18 @@ class BatchServos:
         self._range[:, self._actuators, 0] = -limit
         self._range[:, self._actuators, 1] = limit
 
-    def fade(self, time_s: FloatArray) -> None:
-        """Set the stiffness of fading servos at (R,) times [s], one for each run."""
+    def weaken(self, time_s: FloatArray, driven_nm: FloatArray) -> None:
+        """Set the gains of servos that change, at (R,) times [s], one for each run.
+
+        `driven_nm` (rows, j) are the torques of motors [N m], back-EMF included, under
+        which the supply gives way: those of the step before.
+        """
         on = self.on_share(time_s)
+        if self._sags:
+            lost = np.sum(self._joints["sag_1_nm"] * np.abs(driven_nm), axis=1)
+            voltage = np.maximum(1 - lost, 0.0)[:, None]
+            on = on * voltage
+            self._hold_below(self._full_limit * voltage)
         time_s = np.tile(time_s, len(self._full_kp) // len(time_s))[:, None]
         left = np.maximum(1 - self._joints["fade_1_s"] * time_s, 0) * on
         self.law["kp"] = kp = self._full_kp * left  # also for motors of elastic joints
@@ -197,6 +208,13 @@ class BatchServos:
         for field, column, value in laws:
             old = field[:, self._actuators, column]
             field[:, self._actuators, column] = np.where(self._stiff, value, old)
+
+    def _hold_below(self, limit_nm: FloatArray) -> None:
+        """Take other torque limits (rows, j) [N m], from the next `limit` on."""
+        self.law["limit"] = limit_nm  # also for motors of elastic joints
+        own = np.where(self._stiff, limit_nm, UNLIMITED_NM)
+        self._limit = self._least_limit = np.minimum(own, UNLIMITED_NM)
+        self._changed = True
 
     def on_share(self, time_s: FloatArray) -> FloatArray | float:
         """(rows, j) share of motor torque in the step that begins at (R,) times [s].

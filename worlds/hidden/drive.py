@@ -19,7 +19,11 @@ from worlds.hidden.engine import (
     present,
 )
 from worlds.hidden.plant import HiddenPlant
-from worlds.hidden.servos import Servos, Transmission, servo_torque_nm
+from worlds.hidden.servos import Gains, Servos, Transmission, servo_torque_nm
+
+SETTLED = 10
+"""Rounds in which a supply's voltage and the torques under it settle: in each what is
+wrong shrinks to the share of the voltage that is lost, which is below a half."""
 
 
 class HiddenJoints:
@@ -46,6 +50,7 @@ class HiddenJoints:
         `links_nm` is `HiddenEngine.links_nm`.
         """
         self._servos = Servos(plant, step_s)
+        self._servos.sag_share = surroundings(effects).sag_share
         self._parts: list[tuple[int, JointTorque]] = []
         self._loose: dict[int, Transmission] = {}
         for effect in effects:
@@ -114,14 +119,18 @@ class HiddenJoints:
         speed = present(velocity_rad_s, before)
         self._before = velocity_rad_s.copy()
         servos, gains = self._servos, self._servos.gains(time_s)
-        kp, kd, back_emf, most = gains
         if servos.remember:
             held = [(1.0, mean_of(held))]
-        target, torque = np.zeros_like(speed), np.zeros_like(speed)
-        for share, command_rad in held:
-            aim = servos.controlled(servos.set_point(command_rad), position_rad)
-            target += share * aim
-            torque += share * servo_torque_nm(gains, aim - position_rad, speed)
+        aims = [
+            (share, servos.controlled(servos.set_point(command_rad), position_rad))
+            for share, command_rad in held
+        ]
+        target = sum((share * aim for share, aim in aims), np.zeros_like(speed))
+        errors = [(share, aim - position_rad) for share, aim in aims]
+        if servos.sag_share:
+            gains = self._sagged(gains, errors, speed)
+        torque = _mean_nm(gains, errors, speed)
+        kp, kd, back_emf, most = gains
         for i, transmission in self._loose.items():
             torque[i] = transmission.torque(
                 float(position_rad[i]),
@@ -137,6 +146,25 @@ class HiddenJoints:
                     time_s, float(position_rad[i]), float(speed[i]), float(servo_nm[i])
                 )
         return torque
+
+    def _sagged(
+        self,
+        gains: Gains,
+        errors: Sequence[tuple[float, FloatArray]],
+        speed: FloatArray,
+    ) -> Gains:
+        """The gains with the voltage that a supply has under the torques that follow.
+
+        Motors whose gears are loose are taken to have the torques of the step before.
+        """
+        kp, kd, back_emf, most = found = gains
+        for _ in range(SETTLED):
+            torque = _mean_nm(found, errors, speed)
+            for joint in self._loose:
+                torque[joint] = self.servo_nm[joint]
+            left = self._servos.voltage(torque)
+            found = left * kp, left * kd, back_emf, left * most
+        return found
 
 
 class HiddenDrive:
@@ -221,6 +249,14 @@ class HiddenDrive:
     def motor_torques(self) -> FloatArray:
         """(j,) torques [N m] of the motors in the last physics step."""
         return self._joints.servo_nm.copy()
+
+
+def _mean_nm(
+    gains: Gains, errors: Sequence[tuple[float, FloatArray]], speed: FloatArray
+) -> FloatArray:
+    """(j,) mean torques [N m] of servos with errors (j,) [rad], each for a share."""
+    every = (share * servo_torque_nm(gains, error, speed) for share, error in errors)
+    return np.asarray(sum(every, np.zeros_like(speed)))
 
 
 def _at(links_nm: Callable[[], FloatArray], joint: int) -> float:

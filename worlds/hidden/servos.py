@@ -14,8 +14,13 @@ LAG = 0.1
 (Astrom and Hagglund 2006, "Advanced PID control", chapter 3)."""
 
 
+Gains = tuple[FloatArray, FloatArray, FloatArray, FloatArray]
+"""Gains (j,) of servos: kp [N m/rad], kd [N m s/rad], back-EMF [N m s/rad] and largest
+torque [N m]."""
+
+
 def servo_torque_nm(
-    gains: tuple[FloatArray, FloatArray, FloatArray, FloatArray],
+    gains: Gains,
     error_rad: FloatArray,
     speed_rad_s: FloatArray,
 ) -> FloatArray:
@@ -29,6 +34,12 @@ def servo_torque_nm(
     held = np.minimum(np.maximum(torque, -most), most)
     return np.asarray(held - back_emf * speed_rad_s)
 
+
+REFERENCE_SPEED_RAD_S = 5.0
+"""No-load speed of a motor of which none is known."""
+
+LARGE_ERROR_RAD = 0.1
+"""Error at which a servo without a torque limit counts as fully loaded."""
 
 PLANNED = 20
 """Parts of a step in which a set-point with a limited acceleration is planned."""
@@ -55,6 +66,7 @@ class Servos:
       ripples: (joint, amplitude, per turn, phase) of periodic encoder errors, amplitude
         sin(per turn q + phase) [rad] at joint angle q, which the servo acts on.
       leaks: (to, from, share) for crosstalk between the commands of two joints.
+      sag_share: share of the supply's voltage that is lost at full load of all.
     """
 
     def __init__(self, plant: HiddenPlant, step_s: float) -> None:
@@ -74,6 +86,8 @@ class Servos:
         self.target_rate_share = np.zeros(j)
         self.ripples: list[tuple[int, float, float, float]] = []
         self.leaks: list[tuple[int, int, float]] = []
+        self.sag_share = 0.0
+        self._load_1_nm = _load_1_nm(plant)
         self._step_s = step_s
         self._target: FloatArray | None = None
         self._target_rad_s = np.zeros(j)
@@ -109,9 +123,7 @@ class Servos:
         """Whether torques depend on earlier set-points, not on the present one only."""
         return self._controls or self._slews or self._leads
 
-    def gains(
-        self, time_s: float
-    ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+    def gains(self, time_s: float) -> Gains:
         """kp, kd, back-EMF and largest torque, each (j,), at a time of the recording.
 
         Units are those of `servo_torque_nm`; only kp changes with time, where it fades.
@@ -120,6 +132,11 @@ class Servos:
         if self._fades:
             kp = kp * np.maximum(1.0 - self.fade_1_s * max(time_s, 0.0), 0.0)
         return kp, self.kd_nm_s_rad, self.back_emf_nm_s_rad, self.max_torque_nm
+
+    def voltage(self, torque_nm: FloatArray) -> float:
+        """Share of the supply's voltage that is left under (j,) motor torques [N m]."""
+        load = float(np.abs(torque_nm) @ self._load_1_nm)
+        return max(1.0 - self.sag_share * load, 0.0)
 
     def set_point(self, command_rad: FloatArray) -> FloatArray:
         """(j,) true joint angles [rad] that servos with these (j,) commands aim at."""
@@ -214,6 +231,19 @@ class Servos:
         brakes = faster > 0 and faster**2 / (2 * most) > after
         then = towards * (towards * speed - more if brakes else faster)
         return at + (speed + then) / 2 * part_s, then
+
+
+def _load_1_nm(plant: HiddenPlant) -> FloatArray:
+    """(j,) share of the supply's full load that each N m of a motor's torque takes.
+
+    A motor of torque t and no-load speed w takes a current in proportion to |t| w.
+    """
+    emf, most = plant.back_emf_nm_s_rad, plant.max_torque_nm
+    limited = np.isfinite(most)
+    full = np.where(limited, most, LARGE_ERROR_RAD * plant.kp_nm_rad)
+    known = limited & (emf > 0)
+    speed = np.where(known, full / np.where(known, emf, 1.0), REFERENCE_SPEED_RAD_S)
+    return np.asarray(speed / (full @ speed))
 
 
 @dataclass

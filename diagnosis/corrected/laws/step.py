@@ -23,6 +23,7 @@ class Joint:
       back_emf: the servo's damping outside of the torque limit [N m s/rad], which
         corrected.xml has in the joint's damping.
       is_spring: whether the actuator stands for a spring instead of the servo.
+      voltage: share of the supply's voltage that the servo has in this step.
       motor: angle [rad] and speed [rad/s] that the servo controls, after the last step;
         None if they are the joint's.
     """
@@ -37,6 +38,7 @@ class Joint:
     constant: float
     back_emf: float
     is_spring: bool = False
+    voltage: float = 1.0
     motor: tuple[float, float] | None = None
 
     @classmethod

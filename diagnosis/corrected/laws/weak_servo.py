@@ -35,8 +35,9 @@ class WeakServo(Law):
         now, joint = step.data.time, self.joint
         begin, end = max(now, self.off_s[0]), min(now + step.seconds, self.off_s[1])
         on = 1 - self.off_share * max(end - begin, 0.0) / step.seconds
-        joint.kp = self.full[0] * max(1 - self.fade_1_s * now, 0.0) * on
-        joint.kd = self.full[1] * on
+        strong = on * joint.voltage
+        joint.kp = self.full[0] * max(1 - self.fade_1_s * now, 0.0) * strong
+        joint.kd = self.full[1] * strong
         if joint.name in step.torques:
             step.torques[joint.name] *= on
         if not joint.is_spring:

@@ -171,8 +171,9 @@ def united(joints: Sequence[str], best: Model, larger: Sequence[Model]) -> Model
 
 def servo_effects() -> tuple[str, ...]:
     """Names of the effects that an incomplete robot model may lack at every servo."""
+    wide = ("joint", "commands", "encoders", "supply")
     return tuple(
         name
         for name, kind in all_effects().items()
-        if kind.on_every_servo and kind.place_kind in ("joint", "commands", "encoders")
+        if kind.on_every_servo and kind.place_kind in wide
     )

@@ -29,6 +29,7 @@ KNEE, ARM = "LKneePitch", "LShoulderPitch"
 SPRING = [("joint_elasticity", KNEE, 40.0, 0.1), ("armature", KNEE, 0.02)]
 PLAY = ("backlash", KNEE, 0.03)
 LATE = ("command_latency", "commands", 0.0133)
+SAG = ("supply_sag", "supply", 0.6)
 PEAK = 0.05, 0.05, 0.2, 1.3
 ALONE = [
     ("stribeck_friction", KNEE, 0.1, 0.2, 0.1),
@@ -44,6 +45,7 @@ ALONE = [
     ("acceleration_limit", KNEE, 8.0),
     ("servo_fade", ARM, 0.05),
     ("servo_off", KNEE, 0.8, 0.503, 0.3),
+    SAG,
     ("external_force", "LTibia", 3.0, 0.0, 5.0, 0.503, 0.3),
     ("drag", "RForeArm", 5.0),
     ("presliding", KNEE, 0.5, 0.05),
@@ -67,6 +69,11 @@ TOGETHER = {
         ("coulomb_friction", KNEE, 0.05), ("torque_offset", KNEE, 0.3),
         ("servo_damping", KNEE, 1.4),
     ],
+    "a weak supply of servos that weaken, with play and a soft gear": [
+        SAG, ("servo_fade", KNEE, 0.05), ("backlash", ARM, 0.03), *SPRING[:1],
+        ("torque_offset", ARM, 0.2), ("load_friction", "LElbowRoll", 0.3),
+    ],
+    "a weak supply of servos at their limits": [SAG, ("torque_limit", KNEE, 0.5)],
     "presliding and a ripple behind a wrong zero": [
         ("presliding", KNEE, 0.3, 0.02), ("cogging", KNEE, 0.3, 12.0, 0.5),
         ("encoder_offset", KNEE, 0.1), ("coulomb_friction", ARM, 0.1),

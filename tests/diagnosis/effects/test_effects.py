@@ -5,6 +5,7 @@ from dataclasses import replace
 import mujoco
 import numpy as np
 import pytest
+from joint_rigs import ARM, WHEEL, plant_of, servo_of, trace_of
 
 from diagnosis.effects.library import all_effects, effect
 from diagnosis.effects.parts import PlacedEffect
@@ -54,6 +55,7 @@ PARAMETERS = {
     "end_stop": "angle side",
     "servo_fade": "rate",
     "servo_off": "share start duration",
+    "supply_sag": "share",
     "contact_friction": "coefficient",
     "contact_compliance": "stiffness",
     "ground_slope": "pitch roll",
@@ -223,7 +225,7 @@ def test_where_effects_may_be():
     }
     kinds = {name: one.place_kind for name, one in all_effects().items()}
     for name, kind in kinds.items():
-        if kind in ("commands", "encoders", "gyroscope", "feet", "world"):
+        if kind in ("commands", "encoders", "gyroscope", "feet", "supply", "world"):
             assert places[name] == (kind,)
         elif kind == "body":
             assert places[name] == ("trunk", "left", "right")
@@ -261,7 +263,7 @@ def test_only_joints_that_are_driven_have_a_motor():
 def test_where_effects_cannot_be():
     fixed, bare = walker(base="fixed"), [trace()]
     none = ("command_latency", "gyro_bias", "speed_limit", "contact_friction")
-    none = (*none, "acceleration_limit")
+    none = (*none, "acceleration_limit", "supply_sag")
     controllers = ("integral_term", "dead_band", "error_derivative")
     for name in (
         *none,
@@ -274,6 +276,19 @@ def test_where_effects_cannot_be():
     assert effect("ground_slope").places(fixed, bare) == ("world",)
     assert effect("contact_friction").places(walker(feet=()), bare) == ()
     assert effect("contact_friction").places(walker(), bare) == ("feet",)
+
+
+def test_limbs_that_are_simulated_apart_have_no_supply_in_common():
+    sag, time_s = effect("supply_sag"), np.arange(3) * 0.01
+    other = WHEEL.replace('"wheel"', '"other"').replace('"hinge"', '"other"')
+    for body, places in ((ARM, ("supply",)), (WHEEL + other, ())):
+        plant = plant_of(body, kp=5.0)
+        moved = trace_of(plant, time_s, command_rad=np.zeros(2))
+        assert sag.places(plant, [moved]) == places
+        loose = servo_of(2)
+        assert (
+            sag.places(replace(plant, servo=loose), [replace(moved, servo=loose)]) == ()
+        )
 
 
 @pytest.mark.parametrize("name", ["integral_term", "dead_band", "error_derivative"])

@@ -3,15 +3,21 @@
 import numpy as np
 import pytest
 from joint_rigs import (
+    ARM,
+    GRAVITY,
     INERTIA,
+    LINKS_KG,
+    LINKS_M,
     PENDULUM,
     PENDULUM_LEVER_NM,
     exact,
     integrated,
     plant_of,
     replayed,
+    run_from,
     stiffly_integrated,
     ticks,
+    trace_of,
 )
 from scipy.optimize import brentq
 from wheel_rig import (
@@ -20,6 +26,7 @@ from wheel_rig import (
     HINGE,
     KD,
     KP,
+    LIMIT,
     TIME_S,
     TOLERANCE,
     commanded,
@@ -157,6 +164,43 @@ def test_a_servo_fades_from_the_start_of_the_recordings_clock(start_s):
     run = commanded(plant, COMMAND, time_s)
     found = exact(plant, run, ("servo_fade", HINGE, 0.05))
     assert np.abs(found[:, 0] - truth[:, 0]).max() < 3e-5
+
+
+SHARE = 0.6
+
+
+def test_a_supply_sags_under_a_motors_torque():
+    """Also where the servo is at its limit, which falls with the voltage."""
+    plant = wheel(limit=LIMIT)
+
+    def law(t, y, k):
+        q, v = y
+        asked_nm = np.clip(KP * (COMMAND[k] - q) - KD * v, -LIMIT, LIMIT)
+        free_nm = asked_nm - EMF * v
+        # t = asked (1 - SHARE |t| / LIMIT) - EMF v, solved for the torque t
+        torque = free_nm / (1 + SHARE * np.sign(free_nm) * asked_nm / LIMIT)
+        return [v, torque / INERTIA]
+
+    truth = integrated(law, TIME_S, [0, 0])[:, 0]
+    found = exact(plant, commanded(plant), ("supply_sag", "supply", SHARE))[:, 0]
+    assert np.abs(found - truth).max() < 2e-4
+    assert np.abs(exact(plant, commanded(plant))[:, 0] - truth).max() > 0.02
+
+
+def test_a_supply_sags_under_all_servos_together():
+    """Two links that hold still: the voltage is what both torques leave of it."""
+    limit, emf, kp = 4.0, 0.5, 20.0
+    plant = plant_of(ARM, kp=kp, kd=1.0, limit=limit, emf=emf)
+    (m1, m2), (l1, l2) = LINKS_KG, LINKS_M
+    run = run_from(trace_of(plant, ticks(4.0), command_rad=[0.8, 0.4]), [0.8, 0.4])
+    found, _ = replayed(plant, run, ("supply_sag", "supply", SHARE))
+    first, second = found[-1]
+    outer_nm = m2 * GRAVITY * l2 * np.sin(first + second)
+    torques = np.array([(m1 + m2) * GRAVITY * l1 * np.sin(first) + outer_nm, outer_nm])
+    voltage = 1 - SHARE * torques.sum() / (2 * limit)
+    assert voltage < 0.85
+    held = np.array([0.8, 0.4]) - torques / (kp * voltage)
+    np.testing.assert_allclose(found[-1], held, atol=1e-5)
 
 
 # Signals

@@ -69,6 +69,7 @@ PARAMETERS = {
     "end_stop": ("angle", "side"),
     "servo_fade": ("rate",),
     "servo_off": ("share",),
+    "supply_sag": ("share",),
     "contact_friction": ("coefficient",),
     "contact_compliance": ("stiffness",),
     "ground_slope": ("pitch", "roll"),
@@ -80,7 +81,7 @@ PARAMETERS = {
 BODIES = {"payload_mass", "com_offset", "external_force", "drag"}
 ELSEWHERE = {
     "command_latency", "sensor_delay", "gyro_bias", "contact_friction",
-    "contact_compliance", "ground_slope", "uneven_ground",
+    "contact_compliance", "ground_slope", "supply_sag", "uneven_ground",
 }  # fmt: skip
 UNSAID = {"end_stop": {"side"}, "external_force": {"start", "duration"}}
 

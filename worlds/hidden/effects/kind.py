@@ -25,10 +25,11 @@ _BUMP_BLEND_M = 0.05
 
 @dataclass(eq=False)
 class Surroundings:
-    """Signal delays, gyroscope bias and ground of a robot; all zero without effects.
+    """Signal delays, gyroscope bias, supply and ground; all zero without effects.
 
     Commands reach the servos, and encoders are read, with a delay; the gyroscope's bias
-    (3,) is in the base's frame. The ground, or a fixed base's mount, dips towards the
+    (3,) is in the base's frame. The servos' supply loses `sag_share` of its voltage at
+    full load. The ground, or a fixed base's mount, dips towards the
     front (x) by the pitch and rises towards the left (y) by the roll. `bumps_m` is the
     height of bumps under a floating robot, `friction` that of its soles; None for the
     nominal one.
@@ -37,6 +38,7 @@ class Surroundings:
     command_delay_s: float = 0.0
     encoder_delay_s: float = 0.0
     gyroscope_bias_rad_s: FloatArray = field(default_factory=lambda: np.zeros(3))
+    sag_share: float = 0.0
     pitch_rad: float = 0.0
     roll_rad: float = 0.0
     bumps_m: float = 0.0
@@ -202,7 +204,7 @@ class HiddenKind:
         return None
 
     def change_surroundings(self, surroundings: Surroundings, values: Values) -> None:
-        """Change signal delays, the gyroscope's bias, the ground or its friction."""
+        """Change signal delays, the gyroscope's bias, the supply or the ground."""
 
     def push(self, values: Values) -> Push | None:
         """Law of a force at a body's centre of mass; None if this kind adds none."""

@@ -33,6 +33,28 @@ class CommandLatency(HiddenKind):
         surroundings.command_delay_s += values["delay"]
 
 
+class SupplySag(HiddenKind):
+    """The servos' supply loses voltage in proportion to the current that they take.
+
+    Source: a source with an inner resistance; Hughes and Drury 2019, "Electric motors
+    and drives", chapter 2.
+    """
+
+    name = "supply_sag"
+    since = 5
+    place = "supply"
+    quantities = (Quantity("share", "1", 0.0, 0.9),)
+    sizes = (0.5, 0.05)
+
+    def change_surroundings(self, surroundings: Surroundings, values: Values) -> None:
+        """Let the supply lose a share of its voltage at full load of all servos."""
+        surroundings.sag_share += values["share"]
+
+    def possible(self, plant: HiddenPlant) -> bool:
+        """Whether the robot has no limbs that hang on one supply but move apart."""
+        return plant.floating or plant.description is None
+
+
 class SensorDelay(_OnFeet):  # on a fixed base, late commands look the same
     """The readings of all encoders are late, by a constant delay."""
 
