@@ -158,7 +158,7 @@ class Found:
     """An effect (physics that the sim lacks) that the recordings show.
 
     Attributes:
-      place: where it is: a joint, a body, "feet", "commands" or "world".
+      place: where it is: a joint, a body, "feet", "commands", "supply" or "world".
       parameters: the estimates by the parameters' names.
       probability: probability from 0 to 1 that this is the right effect at the right
         place; None in a verdict "unknown", in which no effect is established.
