@@ -67,6 +67,8 @@ FRICTION: Mapping[str, str] = {
     "stribeck_nm": "extra_nm",
     "stribeck_speed_rad_s": "speed_rad_s",
     "stribeck_exponent": "exponent",
+    "angle_nm": "angle_nm",
+    "angle_log_1_rad": "angle_log_1_rad",
     **{
         name: name
         for name in (
@@ -246,7 +248,10 @@ def _of_joint(
         names = ("fade_1_s", "off_share", "off_start_s", "off_end_s")
         yield WeakServo, {name: own[name] for name in names}
     if any(own[name] for name in VARYING):
-        yield DryFriction, {new: own[name] for name, new in FRICTION.items()}
+        values = {new: own[name] for name, new in FRICTION.items()}
+        # corrected.xml's angles are those that encoders show
+        values["angle_from_rad"] = own["angle_from_rad"] + own["offset_rad"]
+        yield DryFriction, values
     if own["slip_nm"]:
         values = {"torque_nm": own["slip_nm"], "reach_rad": own["slip_rad"]}
         yield Presliding, values

@@ -6,6 +6,7 @@ from contextvars import ContextVar
 from types import MappingProxyType
 
 from diagnosis.effects import (
+    angle_friction,
     bodies,
     controllers,
     friction,
@@ -34,6 +35,7 @@ BUILT_IN: Mapping[str, Effect] = MappingProxyType(
             friction.StribeckFriction(),
             friction.LoadFriction(),
             presliding.Presliding(),
+            angle_friction.AngleFriction(),
             gear_friction.ShapedStribeck(),
             gear_friction.LoadedGear(),
             gear_friction.LoadedStribeck(),

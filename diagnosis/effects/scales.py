@@ -88,6 +88,15 @@ def range_rad(plant: Plant, joint: str) -> tuple[float, float]:
     return float(low), float(high)
 
 
+def middle_rad(plant: Plant, joint: str) -> float:
+    """Middle of the range that the model states for a joint, 0 if it states none.
+
+    Also where the range was lifted, since recordings go beyond it.
+    """
+    low, high = plant.model.joint(joint).range
+    return float(low + high) / 2
+
+
 def mass_kg(plant: Plant) -> float:
     """Mass of the whole robot model."""
     carried = (sum(one.mass for one in loads.values()) for loads in plant.loads)

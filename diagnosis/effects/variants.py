@@ -61,6 +61,9 @@ class Joints:
       extra_load_share, extra_link_share: the same shares, only near standstill.
       extra_square_1_nm: share of the torque that gears carry, per N m of that torque,
         that is dry friction near standstill.
+      angle_nm: the part of dry friction that changes with the angle, as it is at the
+        angle `angle_from_rad`.
+      angle_log_1_rad: logarithm of the factor by which it grows for each rad.
       spring_nm_rad: stiffness between motor and joint; infinite for a rigid gear.
       torque_factor: measured torque over the true one, where torques are compared.
     """
@@ -93,6 +96,9 @@ class Joints:
     extra_load_share: FloatArray
     extra_link_share: FloatArray
     extra_square_1_nm: FloatArray
+    angle_nm: FloatArray
+    angle_log_1_rad: FloatArray
+    angle_from_rad: FloatArray
     spring_nm_rad: FloatArray
     spring_damping_nm_s_rad: FloatArray
     torque_factor: FloatArray

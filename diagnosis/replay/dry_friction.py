@@ -1,4 +1,4 @@
-"""Dry friction of joints beyond Coulomb's, by speed and by the load of gears.
+"""Dry friction of joints beyond Coulomb's, by speed, angle and the load of gears.
 
 Source: Duclusaud, Passault, Padois and Ly 2024, "Extended friction models for the
 physics simulation of servo actuators" (models M1 to M6), and for the square term the
@@ -14,8 +14,15 @@ from groundwalk.arrays import FloatArray
 SHARES_OF_LINKS = ("link_share", "extra_link_share", "extra_square_1_nm")
 """Attributes of `Joints` that need to know the torques that links put on joints."""
 
-VARYING = ("stribeck_nm", "load_share", "extra_load_share", *SHARES_OF_LINKS)
-"""Attributes of `Joints` that make dry friction depend on speed or load."""
+VARYING = (
+    *("stribeck_nm", "angle_nm", "load_share", "extra_load_share"),
+    *SHARES_OF_LINKS,
+)
+"""Attributes of `Joints` that make dry friction depend on speed, angle or load."""
+
+MOST_NATS = 5.0
+"""Largest logarithm of the factor by which friction changes with the angle, so that no
+joint far from its range stops the simulation."""
 
 MOST_STEPS = 30
 """Most steps of Newton's method; it needs a few."""
@@ -31,11 +38,14 @@ def depends_on(joints: Mapping[str, FloatArray], names: Sequence[str]) -> bool:
 
 
 class DryFriction:
-    """Largest dry friction of joints beyond Coulomb's, at known speeds and loads.
+    """Largest dry friction of joints beyond Coulomb's, at known speeds and angles.
 
     With w the joint's speed, T the motor's torque (back-EMF included) and L the torque
     that gravity and the links' motion put on the joint, both along the joint, it is
-      |k_L L - k_T T| + exp(-|w / v|^a) (t + |e_L L - e_T T| + q P^2).
+      |k_L L - k_T T| + exp(-|w / v|^a) (t + |e_L L - e_T T| + q P^2)
+      + r (exp(g z) - 1),
+    with r the part of Coulomb's friction that changes with the angle z. The last term
+    may be below zero, its sum with Coulomb's friction is not.
     Opposed torques press on the gear from both sides, so that shares of them add up.
     P is the smaller one of the two if they are opposed, else 0: what passes through the
     gear from one side to the other. One q stands for both ways, motor drives links and
@@ -47,11 +57,17 @@ class DryFriction:
         joints: Mapping[str, FloatArray],
         velocity_rad_s: FloatArray,
         links_nm: FloatArray | float = 0.0,
+        position_rad: FloatArray | float = 0.0,
     ) -> None:
-        """Take arrays of `Joints` by name, speeds, and torques L [N m] of the links."""
+        """Take arrays of `Joints` by name, speeds, torques L [N m] of links, angles."""
         speed = np.abs(velocity_rad_s / joints["stribeck_speed_rad_s"])
         self._slow = np.exp(-(speed ** joints["stribeck_exponent"]))
         self._joints, self._links_nm = joints, links_nm
+        self._by_angle_nm = joints["angle_nm"]
+        if self._by_angle_nm.any():
+            far_rad = position_rad - joints["angle_from_rad"]
+            grown = np.clip(joints["angle_log_1_rad"] * far_rad, -MOST_NATS, MOST_NATS)
+            self._by_angle_nm = self._by_angle_nm * np.expm1(grown)
 
     def at(self, motor_nm: FloatArray | float) -> FloatArray:
         """Friction [N m] at motor torques T [N m]."""
@@ -60,7 +76,7 @@ class DryFriction:
         carried = self._carried(motor_nm)
         extra = joints["stribeck_nm"] + np.abs(slow)
         extra = extra + joints["extra_square_1_nm"] * carried**2
-        return np.asarray(np.abs(always) + self._slow * extra)
+        return np.asarray(np.abs(always) + self._slow * extra + self._by_angle_nm)
 
     def needed_nm(self, free_nm: FloatArray, way: FloatArray) -> FloatArray:
         """Motor torques T [N m] with T = free + way friction(T).

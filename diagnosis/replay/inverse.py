@@ -114,7 +114,7 @@ class NeededTorques:
         dry = self._plant.model.dof_frictionloss if loss is None else loss[row]
         dry = dry[self._plant.dofs] + joints["coulomb_nm"]
         way, links_nm = np.sign(moved.velocity), self._links(variants, row, moved)
-        rubs = DryFriction(joints, moved.velocity, links_nm)
+        rubs = DryFriction(joints, moved.velocity, links_nm, moved.position)
         torque = rubs.needed_nm(torque + way * dry, way)
         return self._late(torque * joints["torque_factor"], variants, row)
 

@@ -87,6 +87,7 @@ class BatchLaws:
         self._applied = self._bind("qfrc_applied")
         self.outside = OutsideForces(batch, variants, runs, step_s)
         self._elastic: ElasticJoints | None = None
+        self._is_new = True
 
     def begin(
         self,
@@ -111,6 +112,7 @@ class BatchLaws:
             needed = self._start_nm(rising) if self._controllers.remembers else None
             self._controllers.begin(needed)
         self.outside.begin()
+        self._is_new = True
         is_first = self._elastic is None
         if np.isfinite(self.joints["spring_nm_rad"]).any():
             law, inertia = self._servos.law, self._rotor_kg_m2
@@ -129,10 +131,11 @@ class BatchLaws:
           ends: targets as the step begins and ends, if any jumps within it.
         """
         position, velocity = self.joint_state()
-        if self._servos.varies:
-            self._servos.weaken(time_s, self._driven_nm(velocity))
         offset = self.joints["offset_rad"]
         asked_rad = mean_rad = asked_rad - offset
+        self._feel(asked_rad, position)
+        if self._servos.varies:
+            self._servos.weaken(time_s, self._driven_nm(velocity))
         if ends is not None:
             ends = ends[0] - offset, ends[1] - offset
             seen_rad = self.encoder_rad()
@@ -143,7 +146,7 @@ class BatchLaws:
             asked_rad = np.where(limited, slewed_rad, asked_rad)
             mean_rad = np.where(limited, slewed_rad, mean_rad)
         if self._friction.varies:
-            self._rub(velocity, 0.0)
+            self._rub(position, velocity, 0.0)
         if self._controllers is not None:
             seen = self.encoder_rad(), self.encoder_rad_s()
             if self._gaps is not None:
@@ -182,7 +185,7 @@ class BatchLaws:
             )
             torque_nm = np.where(self._elastic.soft, 0.0, torque_nm)
         if self._friction.varies:
-            self._rub(velocity, torque_nm)
+            self._rub(position, velocity, torque_nm)
         if self._adds:
             torque_nm = torque_nm + self._own_nm(position, velocity, time_s)
         self._applied[:, self._dofs] = torque_nm
@@ -224,12 +227,29 @@ class BatchLaws:
             needed = needed - effect.torque_nm(values, position, velocity, start)
         return np.asarray(needed + self._servos.law["kd"] * velocity)
 
-    def _rub(self, velocity: FloatArray, added_nm: FloatArray | float) -> None:
-        """Set dry friction by joint speed and by the torque through the gear.
+    def _rub(
+        self,
+        position: FloatArray,
+        velocity: FloatArray,
+        added_nm: FloatArray | float,
+    ) -> None:
+        """Set dry friction by joint angle, speed and the torque through the gear.
 
         `added_nm` (n R, j) are torques of motors without a servo.
         """
-        self._friction.follow(velocity, self._driven_nm(velocity) + added_nm)
+        driven_nm = self._driven_nm(velocity) + added_nm
+        self._friction.follow(position, velocity, driven_nm)
+
+    def _feel(self, asked_rad: FloatArray, position: FloatArray) -> None:
+        """Give motors their torques (n R, j) before the first step, if it needs them.
+
+        Springs between motors and joints begin without any.
+        """
+        needed = self._is_new and (self._friction.varies or self._servos.varies)
+        self._is_new = False
+        if needed:
+            self._ctrl[:, self._actuators] = np.where(self._stiff, asked_rad, position)
+            self._batch.forward()
 
     def _driven_nm(self, velocity: FloatArray) -> FloatArray:
         """(n R, j) torques [N m] of servos through their gears, in the step before.

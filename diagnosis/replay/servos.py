@@ -284,8 +284,8 @@ class BatchFriction:
     """Sets MuJoCo's dry friction (`frictionloss`) of all joints in all simulations.
 
     Attributes:
-      varies: whether some friction depends on speed or load; if so, call `follow` at
-        every step.
+      varies: whether some friction depends on speed, angle or load; if so, call
+        `follow` at every step.
     """
 
     def __init__(
@@ -318,13 +318,18 @@ class BatchFriction:
         solref = stops_in_a_step(damping, inertia_kg_m2, step_s)
         np.asarray(batch.expand("dof_solref"))[:] = solref
 
-    def follow(self, velocity_rad_s: FloatArray, driven_nm: FloatArray) -> None:
-        """Set friction by (rows, j) speeds [rad/s] and by motors' torques [N m].
+    def follow(
+        self,
+        position_rad: FloatArray,
+        velocity_rad_s: FloatArray,
+        driven_nm: FloatArray,
+    ) -> None:
+        """Set friction by (rows, j) angles, speeds [rad/s] and motors' torques [N m].
 
         The links' torques are those of the step before, as are the motors'.
         """
         links_nm = 0.0 if self._bias is None else -self._bias[:, self._dofs]
-        friction = DryFriction(self._joints, velocity_rad_s, links_nm)
+        friction = DryFriction(self._joints, velocity_rad_s, links_nm, position_rad)
         self._torque_nm[:, self._dofs] = self._least_nm + friction.at(driven_nm)
 
 

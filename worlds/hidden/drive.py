@@ -59,7 +59,10 @@ class HiddenJoints:
                 rigid_nm_rad = plant.rigid_nm_rad(joint)
                 inertia = float(inertia_kg_m2[joint])
                 own_nm = partial(_at, links_nm, joint)
-                contact = StiffContact(inertia, step_s, rigid_nm_rad, own_nm)
+                middle_rad = float(np.mean(plant.range_rad[joint]))
+                contact = StiffContact(
+                    inertia, step_s, rigid_nm_rad, own_nm, middle_rad
+                )
                 self._add(joint, effect, contact)
         self._before: FloatArray | None = None
         self.servo_nm = np.zeros(len(plant.joints))

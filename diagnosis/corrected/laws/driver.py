@@ -63,9 +63,7 @@ class CorrectedLaws:
         this call, which begins with none.
         """
         if not self._targets:
-            mujoco.mj_forward(self.model, self.data)
-            start = self.data.qpos
-            self._targets = {one.name: start[one.qpos] for one in self._each()}
+            self._begin(targets)
         self._targets |= targets
         step = Step(
             self.model,
@@ -93,6 +91,20 @@ class CorrectedLaws:
         """What the gyroscope shows [rad/s] for a true turn rate, about its axes."""
         errors = [law.gyroscope_bias for law in self.laws]
         return [rate + sum(one) for rate, *one in zip(true, *errors, strict=True)]
+
+    def _begin(self, targets: Mapping[str, float]) -> None:
+        """Hold joints that have no target yet, and give motors their first torques.
+
+        Springs between motors and joints begin without any.
+        """
+        start = self.data.qpos
+        self._targets = {one.name: start[one.qpos] for one in self._each()}
+        self._targets |= targets
+        for joint in self._each():
+            angle = start[joint.qpos]
+            asked = angle if joint.is_spring else self._targets[joint.name]
+            self.data.ctrl[joint.actuator] = asked
+        mujoco.mj_forward(self.model, self.data)
 
     def _reading(self, joint: Joint) -> tuple[float, float]:
         for law in self.laws:

@@ -1,4 +1,4 @@
-"""Dry friction that depends on speed, or on the torque through the gear."""
+"""Dry friction that depends on speed, angle, or the torque through the gear."""
 
 from collections.abc import Mapping
 
@@ -9,13 +9,15 @@ from diagnosis.corrected.laws.step import Joint, Law, Step
 
 
 class DryFriction(Law):
-    """Friction that is larger at rest (Stribeck), or grows with load, or both.
+    """Friction that is larger at rest (Stribeck), or changes with load or angle.
 
     Beyond the friction of corrected.xml it is, with v the speed, T the motor's torque
     less its back-EMF, and L the torque of gravity and the links' motion on the joint,
       |link_share L - load_share T| + exp(-|v / speed_rad_s|^exponent)
-      (extra_nm + |extra_link_share L - extra_load_share T| + extra_square_1_nm P^2).
-    P is the smaller one of T and L where they are opposed, else 0. MuJoCo gets it as
+      (extra_nm + |extra_link_share L - extra_load_share T| + extra_square_1_nm P^2)
+      + angle_nm (exp(angle_log_1_rad (q - angle_from_rad)) - 1).
+    P is the smaller one of T and L where they are opposed, else 0; q is the joint's
+    angle, and the exponent of it is kept within +-5. MuJoCo gets it as
     `dof_frictionloss` before each step, so that it can hold the joint at rest.
     """
 
@@ -32,11 +34,16 @@ class DryFriction(Law):
         extra_load_share: float = 0.0,
         extra_link_share: float = 0.0,
         extra_square_1_nm: float = 0.0,
+        angle_nm: float = 0.0,
+        angle_log_1_rad: float = 0.0,
+        angle_from_rad: float = 0.0,
     ) -> None:
         """Add friction to a joint; by default it has none beyond corrected.xml's."""
         self.joint = joints[joint]
         self.extra_nm, self.extra_square_1_nm = extra_nm, extra_square_1_nm
         self.speed_rad_s, self.exponent = speed_rad_s, exponent
+        self.angle_nm, self.angle_from_rad = angle_nm, angle_from_rad
+        self.angle_log_1_rad = angle_log_1_rad
         self.shares = link_share, load_share
         self.extra_shares = extra_link_share, extra_load_share
         self.least_nm = float(model.dof_frictionloss[self.joint.dof])
@@ -57,4 +64,7 @@ class DryFriction(Law):
         )
         extra += self.extra_nm + self.extra_square_1_nm * through**2
         slow = np.exp(-(abs(speed / self.speed_rad_s) ** self.exponent))
+        far_rad = step.data.qpos[joint.qpos] - self.angle_from_rad
+        grown = min(max(self.angle_log_1_rad * far_rad, -5.0), 5.0)
+        always += self.angle_nm * np.expm1(grown)
         step.model.dof_frictionloss[joint.dof] = self.least_nm + always + slow * extra

@@ -35,6 +35,7 @@ ALONE = [
     ("stribeck_friction", KNEE, 0.1, 0.2, 0.1),
     ("load_friction", ARM, 0.4),
     ("shaped_stribeck_friction", KNEE, 0.1, 0.2, 0.1, 1.3),
+    ("angle_friction", KNEE, 0.2, 3.0),
     ("gear_friction", ARM, 0.05, 0.2),
     ("gear_stribeck_friction", ARM, *PEAK, 0.1, 0.2),
     ("directional_gear_friction", ARM, *PEAK, 0.05, 0.2, 0.1, 0.3),
@@ -65,6 +66,7 @@ TOGETHER = {
         LATE, PLAY, ("encoder_offset", KNEE, 0.1), ("torque_offset", KNEE, 0.5),
     ],
     "all of friction": [
+        ("angle_friction", KNEE, 0.2, 0.3), ("encoder_offset", KNEE, 0.1),
         ("stribeck_friction", KNEE, 0.1, 0.2, 0.1), ("load_friction", KNEE, 0.2),
         ("coulomb_friction", KNEE, 0.05), ("torque_offset", KNEE, 0.3),
         ("servo_damping", KNEE, 1.4),

@@ -23,6 +23,7 @@ PARAMETERS = {
     "stribeck_friction": "coulomb_torque extra_torque speed",
     "load_friction": "share",
     "presliding": "torque reach",
+    "angle_friction": "torque factor",
     "shaped_stribeck_friction": "coulomb_torque extra_torque speed exponent",
     "gear_friction": "coulomb_torque share",
     "gear_stribeck_friction": "coulomb_torque extra_torque speed exponent "

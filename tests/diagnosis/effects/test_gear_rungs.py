@@ -39,6 +39,7 @@ def test_the_whole_ladder_is_above_dry_friction_and_nothing_above_its_top():
     assert containing(typical("coulomb_friction")) == {
         "stribeck_friction@hinge",
         "presliding@hinge",
+        "angle_friction@hinge",
         *above,
     }
     assert containing(typical("quadratic_gear_friction")) == set()

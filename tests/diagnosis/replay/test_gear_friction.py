@@ -114,7 +114,7 @@ def test_more_friction_than_motors_have_ends_with_a_number():
     joints = {
         "stribeck_nm": 0.1, "stribeck_speed_rad_s": 0.1, "stribeck_exponent": 2.0,
         "load_share": 0.5, "link_share": 0.5, "extra_load_share": 1.0,
-        "extra_link_share": 1.0, "extra_square_1_nm": 1.0,
+        "extra_link_share": 1.0, "extra_square_1_nm": 1.0, "angle_nm": 0.0,
     }  # fmt: skip
     joints = {name: np.array([value]) for name, value in joints.items()}
     still = DryFriction(joints, np.array([1e-6]), np.array([-2.0]))

@@ -10,6 +10,7 @@ from joint_rigs import (
     LINKS_M,
     PENDULUM,
     PENDULUM_LEVER_NM,
+    WHEEL,
     exact,
     integrated,
     plant_of,
@@ -166,6 +167,24 @@ def test_a_servo_fades_from_the_start_of_the_recordings_clock(start_s):
     assert np.abs(found[:, 0] - truth[:, 0]).max() < 3e-5
 
 
+def test_dry_friction_may_change_with_the_angle():
+    """A wheel that coasts loses the friction's work: integrated over the angle."""
+    plant, time_s = plant_of(WHEEL), ticks(1.0)
+    torque_nm, factor, speed = 0.02, 3.0, 2.0
+    run = run_from(
+        trace_of(plant, time_s, command_torque_nm=[0.0]), velocity_rad_s=speed
+    )
+    found, velocity = replayed(plant, run, ("angle_friction", HINGE, torque_nm, factor))
+    work = torque_nm * np.expm1(np.log(factor) * found[:, 0]) / np.log(factor)
+    moving = velocity[:, 0] > 0.1
+    left = 0.5 * INERTIA * (speed**2 - velocity[:, 0] ** 2)
+    np.testing.assert_allclose(work[moving], left[moving], atol=1e-3 * left.max())
+    # it stops where all is lost, and stays there
+    far = np.log1p(0.5 * INERTIA * speed**2 * np.log(factor) / torque_nm)
+    assert found[-1, 0] == pytest.approx(far / np.log(factor), rel=1e-3)
+    assert not moving[-1]
+
+
 SHARE = 0.6
 
 
@@ -201,6 +220,26 @@ def test_a_supply_sags_under_all_servos_together():
     assert voltage < 0.85
     held = np.array([0.8, 0.4]) - torques / (kp * voltage)
     np.testing.assert_allclose(found[-1], held, atol=1e-5)
+
+
+@pytest.mark.parametrize(
+    "effect",
+    [
+        ("load_friction", HINGE, 0.2),
+        ("gear_friction", HINGE, 0.0, 0.2),
+        ("supply_sag", "supply", SHARE),
+    ],
+    ids=lambda effect: effect[0],
+)
+def test_where_a_wheel_begins_to_turn_makes_no_difference(effect):
+    """At the first step, too, the motor's torque is that of the error."""
+    plant, begun = wheel(limit=LIMIT), []
+    for start_rad in (0.0, 2.0):
+        run = commanded(
+            plant, COMMAND + start_rad, position_rad=start_rad, velocity_rad_s=0.5
+        )
+        begun.append(replayed(plant, run, effect)[0] - start_rad)
+    np.testing.assert_allclose(*begun, atol=1e-9)
 
 
 # Signals

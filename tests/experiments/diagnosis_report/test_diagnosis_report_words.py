@@ -70,6 +70,7 @@ PARAMETERS = {
     "servo_fade": ("rate",),
     "servo_off": ("share",),
     "supply_sag": ("share",),
+    "angle_friction": ("torque", "factor"),
     "contact_friction": ("coefficient",),
     "contact_compliance": ("stiffness",),
     "ground_slope": ("pitch", "roll"),

@@ -135,6 +135,51 @@ class LoadFriction(HiddenKind):
 
 
 @dataclass
+class FrictionByAngle(DryFriction):
+    """Dry friction that sticks; it changes by a factor for each rad.
+
+    It is the Coulomb torque at `middle_rad`.
+    """
+
+    factor: float = 1.0
+    middle_rad: float = 0.0
+
+    def sliding_nm(self, speed_rad_s: float, servo_nm: float) -> float:
+        """The torque [N m] at which it slides, at the angle of the last step."""
+        angle_rad = self.middle_rad if self._last_rad is None else self._last_rad
+        far_rad = angle_rad - self.middle_rad
+        return self.coulomb_nm * math.exp(math.log(self.factor) * far_rad)
+
+
+class AngleFriction(HiddenKind):
+    """Dry friction that is larger at one end of the joint's range than at the other."""
+
+    name = "angle_friction"
+    since = 5
+    in_torques = True
+    quantities = (Quantity("torque", "N m", 0.0), Quantity("factor", "1", 0.01, 100.0))
+    needs_motion = True
+    apart = ("coulomb_friction", "stribeck_friction")  # which it looks like
+
+    def torque(self, values: Values, contact: StiffContact) -> JointTorque:
+        """Law of the friction torque, `torque` in the middle of the joint's range."""
+        return FrictionByAngle.of(
+            contact,
+            coulomb_nm=values["torque"],
+            factor=values["factor"],
+            middle_rad=contact.middle_rad,
+        ).torque
+
+    def size(self, s: Setting) -> dict[str, float]:
+        """Torque of 3 % (hard to detect) to 15 % (easy) of the servo's usual torque.
+
+        It changes by a factor of 2 to 4 for each rad, to either side.
+        """
+        factor = math.exp(s.sign * float(s.rng.uniform(math.log(2), math.log(4))))
+        return {"torque": s.part(0.15, 0.03) * s.torque_nm, "factor": factor}
+
+
+@dataclass
 class SoftBristles:
     """LuGre friction without damping (Canudas de Wit, Olsson, Astrom, Lischinsky 1995).
 

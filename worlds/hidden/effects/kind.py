@@ -119,13 +119,14 @@ class StiffContact:
     The inertia is that seen by a torque at the joint, with all other joints free;
     surfaces that stick and gear teeth that touch have the stiffness `rigid_nm_rad`.
     `links_nm` tells the torque [N m] that gravity and the links' motion, accelerations
-    left out, put on the joint at present.
+    left out, put on the joint at present. `middle_rad` is the middle of its range.
     """
 
     inertia_kg_m2: float
     step_s: float
     rigid_nm_rad: float = RIGID_NM_RAD
     links_nm: Callable[[], float] = float
+    middle_rad: float = 0.0
 
     def stiffness_nm_rad(self, wanted_nm_rad: float) -> float:
         """The wanted stiffness, or the largest that the time step can resolve."""
