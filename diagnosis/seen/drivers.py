@@ -24,8 +24,8 @@ def drivers_of(rows: Rows, chosen: IntArray, joint: int) -> dict[str, FloatArray
     """Columns (n, k) of each quantity, by its name, in n chosen rows of one joint.
 
     Each is a simple additive law. Speed is linear, without the jump at zero that is the
-    sign's. Load includes friction that grows with load, but not friction at the mean
-    load, which is the sign's, too. History fades with the travel since the last turn,
+    sign's. Load includes friction that grows with load, and position friction that
+    grows with the angle, but not friction at their means, which is the sign's. History fades with the travel since the last turn,
     and so differs from the sign near turns only.
     """
     v = rows.velocity_rad_s[chosen, joint]
@@ -38,7 +38,7 @@ def drivers_of(rows: Rows, chosen: IntArray, joint: int) -> dict[str, FloatArray
         "speed": v[:, None],
         "acceleration": rows.acceleration_rad_s2[chosen, joint][:, None],
         "load": np.column_stack([_hats(needed, LOAD_KNOTS), heavier * way]),
-        "position": _hats(q, POSITION_KNOTS),
+        "position": np.column_stack([_hats(q, POSITION_KNOTS), (q - q.mean()) * way]),
         "travel since turn": _fading(rows, chosen, joint, way),
         OTHERS: np.column_stack(
             [rows.velocity_rad_s[chosen][:, others], rows.needed_nm[chosen][:, others]]

@@ -51,6 +51,17 @@ def test_two_laws_need_both():
     assert {one.name for one in largest} == {"sign of speed", "position"}
 
 
+def test_friction_that_grows_with_the_angle_goes_with_position():
+    _, shares, found = best_of(lambda q, v, needed: (1.0 + 1.5 * q) * np.sign(v))
+    assert found.together > 0.95
+    assert shares["position"].lost > 0.1
+    assert all(
+        one.lost < 0.02
+        for name, one in shares.items()
+        if name not in ("sign of speed", "position")
+    )
+
+
 def test_noise_cannot_be_explained():
     best, _, found = best_of(lambda q, v, needed: 0.0)
     assert best.alone < 0.1
