@@ -25,8 +25,9 @@ def drivers_of(rows: Rows, chosen: IntArray, joint: int) -> dict[str, FloatArray
 
     Each is a simple additive law. Speed is linear, without the jump at zero that is the
     sign's. Load includes friction that grows with load, and position friction that
-    grows with the angle, but not friction at their means, which is the sign's. History fades with the travel since the last turn,
-    and so differs from the sign near turns only.
+    grows with the angle, but not friction at their means, which is the sign's, too.
+    History fades with the travel since the last turn, and so differs from the sign near
+    turns only.
     """
     v = rows.velocity_rad_s[chosen, joint]
     q = rows.position_rad[chosen, joint]
