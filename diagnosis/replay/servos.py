@@ -19,6 +19,10 @@ from groundwalk.arrays import FloatArray
 UNLIMITED_NM = 1e9
 """Torque limit [N m] that stands for no limit, since MuJoCo needs a finite number."""
 
+LEAST_VOLTAGE = 1e-3
+"""Share of a supply's voltage that is left at least: no servo loses all of its gains.
+"""
+
 JUMP = 0.3
 """A target that changes in one physics step by more than this share of the position
 error at which the servo saturates counts as a jump."""
@@ -197,7 +201,7 @@ class BatchServos:
         on = self.on_share(time_s)
         if self._sags:
             lost = np.sum(self._joints["sag_1_nm"] * np.abs(driven_nm), axis=1)
-            voltage = np.maximum(1 - lost, 0.0)[:, None]
+            voltage = np.maximum(1 - lost, LEAST_VOLTAGE)[:, None]
             on = on * voltage
             self._hold_below(self._full_limit * voltage)
         time_s = np.tile(time_s, len(self._full_kp) // len(time_s))[:, None]

@@ -136,7 +136,7 @@ class Servos:
     def voltage(self, torque_nm: FloatArray) -> float:
         """Share of the supply's voltage that is left under (j,) motor torques [N m]."""
         load = float(np.abs(torque_nm) @ self._load_1_nm)
-        return max(1.0 - self.sag_share * load, 0.0)
+        return max(1.0 - self.sag_share * load, 1e-3)
 
     def set_point(self, command_rad: FloatArray) -> FloatArray:
         """(j,) true joint angles [rad] that servos with these (j,) commands aim at."""

@@ -12,7 +12,7 @@ class SupplySag(Law):
 
     For each N m of a motor's torque, as it was in the step before, the share
     `lost_1_nm` of the voltage is lost. Stiffness, damping and torque limit of all
-    servos are in proportion to what is left; back-EMF is not.
+    servos are in proportion to what is left, at least a thousandth; back-EMF is not.
     """
 
     def __init__(
@@ -31,7 +31,7 @@ class SupplySag(Law):
             self.lost_1_nm.get(one.name, 0.0) * abs(self._driven_nm(step, one))
             for one in self.joints
         )
-        voltage = max(1 - lost, 0.0)
+        voltage = max(1 - lost, 1e-3)
         model = step.model
         for one, (kp, kd, limit) in zip(self.joints, self.full, strict=True):
             one.voltage = voltage

@@ -3,6 +3,7 @@
 import pytest
 from hidden_arm import fitted, floor, plant, predictor_of, recorded
 
+from diagnosis.effects import angle_friction
 from diagnosis.effects.library import effect
 from diagnosis.effects.parts import PlacedEffect
 from diagnosis.effects.variants import Variants
@@ -45,6 +46,16 @@ def test_it_is_found_with_its_values(factor):
     assert fit.energy < noise + 3 * spread
     for others in NEIGHBOURS:
         assert fitted(predictor, *others).energy > fit.energy + 20
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("power", [0.5, 2.0])
+def test_the_factors_that_are_tried_may_be_nearer_to_one_or_further(power, monkeypatch):
+    some = tuple(one**power for one in angle_friction.GROWN_FACTORS)
+    monkeypatch.setattr(angle_friction, "GROWN_FACTORS", some)
+    predictor = predictor_of(recorded(f"angle_friction@{JOINT}:torque=0.4,factor=2.0"))
+    fit = best_fit(predictor, 0.4)
+    assert fit.model[0].values == pytest.approx((0.4, 2.0), rel=0.05)
 
 
 @pytest.mark.slow
