@@ -159,7 +159,6 @@ class AngleFriction(HiddenKind):
     in_torques = True
     quantities = (Quantity("torque", "N m", 0.0), Quantity("factor", "1", 0.01, 100.0))
     needs_motion = True
-    apart = ("coulomb_friction", "stribeck_friction")  # which it looks like
 
     def torque(self, values: Values, contact: StiffContact) -> JointTorque:
         """Law of the friction torque, `torque` in the middle of the joint's range."""
