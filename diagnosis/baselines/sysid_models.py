@@ -16,7 +16,7 @@ from diagnosis.effects.variants import Variants
 from diagnosis.plant.plant import Plant
 from diagnosis.plant.servo import Servo
 from diagnosis.replay.drive import Held
-from diagnosis.replay.servos import SOLIMP_FRICTION, stops_in_a_step
+from diagnosis.replay.joint_friction import SOLIMP_FRICTION, stops_in_a_step
 from diagnosis.traces.trace import Trace
 from diagnosis.traces.windows import Run
 from groundwalk.arrays import FloatArray

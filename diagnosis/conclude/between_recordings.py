@@ -11,14 +11,13 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
-from scipy.stats import f, t
+from scipy.stats import chi2, f, t
 
 from diagnosis.effects.library import lasts
 from diagnosis.effects.parts import PlacedEffect
 from diagnosis.residuals.predictor import Model, Predictor
 from diagnosis.residuals.ties import kinds_of
 from diagnosis.search.fitting import FittedModel
-from groundwalk import chi_squared
 from groundwalk.arrays import FloatArray, IntArray
 
 LEVEL = 0.05
@@ -81,7 +80,7 @@ def may_be_scatter(seen: Sequence[Sizes]) -> bool:
             own = one.recording == number
             within = _plus(within, _scatter(Sizes(*(part[own] for part in one))))
     (scatter, free), (inside, more) = between, within
-    if not free or chi_squared.chance_above(scatter, free) > LEVEL:
+    if not free or chi2.sf(scatter, free) > LEVEL:
         return False
     if more and f.sf(scatter / free / max(inside / more, 1.0), free, more) > LEVEL:
         scatter, free = _plus(between, within)

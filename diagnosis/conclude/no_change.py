@@ -11,14 +11,13 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
-from scipy.stats import f, t
+from scipy.stats import chi2, f, t
 
 from diagnosis.effects.library import lasts
 from diagnosis.residuals.predictor import Model, Predictor
 from diagnosis.residuals.ties import groups_of, number_of_values
 from diagnosis.search.fitting import FittedModel, fit_all
 from diagnosis.search.judging import places_of_effects
-from groundwalk import chi_squared
 from groundwalk.arrays import BoolArray, FloatArray
 
 LEVEL = 0.05
@@ -87,7 +86,7 @@ def _same_size(
         mean = float(weights[own] @ sizes[own]) / total
         scatter += float(weights[own] @ (sizes[own] - mean) ** 2)
         known += total - float(weights[own] @ weights[own]) / total
-    if chi_squared.chance_above(scatter, free) > LEVEL:
+    if chi2.sf(scatter, free) > LEVEL:
         return False
     between = max(scatter - free, 0.0) / max(known, 1e-12)
     rough = 1 / (1 / weights + between)
@@ -105,8 +104,7 @@ def _gains_no_more(told: Told, level: float) -> bool:
     """
     count, before = len(told.is_healthy), float(told.is_healthy.sum())
     free, single = count - 2, float(told.single.sum())
-    by_chance = chi_squared.chance_above(2 * single, told.values * free)
-    if count < FEWEST or by_chance > LEVEL:
+    if count < FEWEST or chi2.sf(2 * single, told.values * free) > LEVEL:
         return False
     ratio = told.shared * before / count * free / max(single, 1e-12)
     return bool(f.sf(ratio, told.values, free) > level)

@@ -12,8 +12,9 @@ from diagnosis.effects.library import effect
 from diagnosis.effects.variants import Variants
 from diagnosis.plant.plant import Plant
 from diagnosis.plant.servo import Servo
+from diagnosis.replay.joint_friction import BatchFriction
 from diagnosis.replay.replay import STEP_S
-from diagnosis.replay.servos import BatchFriction, BatchServos
+from diagnosis.replay.servos import BatchServos
 from diagnosis.residuals.predictor import Model
 from diagnosis.residuals.replays import variants_of
 from groundwalk.arrays import BoolArray, FloatArray

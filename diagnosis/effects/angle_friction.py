@@ -21,8 +21,8 @@ class AngleFriction(JointEffect):
     whose ratio changes with the angle, cables that bend, seals and shafts out of true.
 
     Source: friction maps over position of Armstrong-Helouvry 1991, "Control of machines
-    with friction", chapter 4; of the calves of a Unitree Go2 in the air three have
-    about twice as much friction at one end of their range as at the other.
+    with friction"; the calves of a real Go2 in the air, of which three rub about twice
+    as hard at one end of their motion as at the other.
     """
 
     name = "angle_friction"

@@ -23,9 +23,10 @@ class SupplySag(Effect):
     that all are 1 - share sum(|t| w) / sum(T w) times the nominal ones, with T the full
     torques. Back-EMF stays.
 
+    Typical is a loss of up to 15 %.
+
     Source: motor and supply as resistances in series, Hughes and Drury 2019, "Electric
-    motors and drives", chapters 2 and 3; batteries of walking robots and supplies of
-    servo arms lose 5 to 30 %.
+    motors and drives".
     """
 
     name = "supply_sag"

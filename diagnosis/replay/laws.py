@@ -9,15 +9,15 @@ from diagnosis.effects.variants import Variants
 from diagnosis.plant.loads import Inertias, carry
 from diagnosis.plant.plant import Plant
 from diagnosis.plant.servo import Servo
+from diagnosis.replay.columns import columns
 from diagnosis.replay.controllers import CONTROLLED, BatchControllers, HeldTorques
 from diagnosis.replay.dry_friction import depends_on
+from diagnosis.replay.joint_friction import BatchFriction
 from diagnosis.replay.outside import OutsideForces
 from diagnosis.replay.presliding import BatchPresliding
 from diagnosis.replay.servos import (
-    BatchFriction,
     BatchServos,
     Ends,
-    columns,
     first_share,
 )
 from diagnosis.replay.set_points import SetPoints

@@ -8,10 +8,10 @@ from mujoco.batch import Batch, SimulationError
 
 from diagnosis.effects.variants import Variants
 from diagnosis.plant.servo import Servo
+from diagnosis.replay.columns import Columns, columns
 from diagnosis.replay.conforming_ground import conform
 from diagnosis.replay.drive import Drive
 from diagnosis.replay.laws import BatchLaws
-from diagnosis.replay.servos import Columns, columns
 from diagnosis.traces.trace import Trace
 from diagnosis.traces.windows import Run
 from groundwalk.arrays import FloatArray, IntArray

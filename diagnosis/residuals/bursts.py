@@ -8,11 +8,11 @@ the first detector, `onsets` finds moments from which on the error is large.
 from itertools import chain
 
 import numpy as np
+from scipy.stats import chi2
 
 from diagnosis.effects.parts import Interval
 from diagnosis.residuals.predictor import Predictor
 from diagnosis.traces.trace import stretches
-from groundwalk import chi_squared
 from groundwalk.arrays import FloatArray
 
 BIN_S = 0.05
@@ -74,8 +74,7 @@ def _bursts(
     found: list[tuple[float, Span, str]] = []
     for number, trace in enumerate(predictor.traces):
         energy, scored = binned(predictor, residual, number, channel)
-        chance = CHANCE / len(scored)
-        by_chance = [chi_squared.exceeded(chance, max(rows, 1)) for rows in scored]
+        by_chance = chi2.isf(CHANCE / len(scored), np.maximum(scored, 1))
         least = max(STANDS_OUT * np.median(energy), LEAST * scored.mean())
         limit = np.maximum(by_chance, least)
         for first, last in stretches(energy > limit):

@@ -4,8 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy.special import binom
+from scipy.stats import chi2
 
-from groundwalk import chi_squared
 from groundwalk.arrays import BoolArray, FloatArray
 
 _ORDERS = (3, 5)
@@ -134,10 +134,8 @@ def _quiet_power(time_s: FloatArray, values: FloatArray, order: int) -> float:
     whole = len(squares) // _BLOCK * _BLOCK
     if whole < 4 * _BLOCK:
         there = squares[np.isfinite(squares)]
-        if not len(there):
-            return 0.0
         # the median of a squared standard normal variable
-        return float(np.median(there) / chi_squared.quantile(0.5, 1))
+        return float(np.median(there) / chi2.ppf(0.5, 1)) if len(there) else 0.0
     blocks = squares[:whole].reshape(-1, _BLOCK)
     full = blocks[np.isfinite(blocks).sum(axis=1) > _BLOCK // 2]
     power = np.nanmean(full, axis=1) if len(full) else np.zeros(0)
@@ -145,7 +143,7 @@ def _quiet_power(time_s: FloatArray, values: FloatArray, order: int) -> float:
     if not len(power):
         return 0.0
     freedom = _BLOCK / _correlated(order)
-    low = chi_squared.quantile(_QUIET, freedom) / freedom
+    low = chi2.ppf(_QUIET, freedom) / freedom
     return float(np.quantile(power, _QUIET) / low)
 
 

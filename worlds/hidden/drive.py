@@ -21,9 +21,10 @@ from worlds.hidden.engine import (
 from worlds.hidden.plant import HiddenPlant
 from worlds.hidden.servos import Gains, Servos, Transmission, servo_torque_nm
 
-SETTLED = 10
-"""Rounds in which a supply's voltage and the torques under it settle: in each what is
-wrong shrinks to the share of the voltage that is lost, which is below a half."""
+SETTLED = 3
+"""Rounds in which a supply's voltage and the torques under it settle. Each is exact
+where torques are in proportion to the voltage but for back-EMF, and keep their signs.
+"""
 
 
 class HiddenJoints:
@@ -160,14 +161,24 @@ class HiddenJoints:
 
         Motors whose gears are loose are taken to have the torques of the step before.
         """
-        kp, kd, back_emf, most = found = gains
-        for _ in range(SETTLED):
-            torque = _mean_nm(found, errors, speed)
+        kp, kd, back_emf, most = gains
+
+        def weaker(left: float) -> Gains:
+            return left * kp, left * kd, back_emf, left * most
+
+        def then(left: float) -> float:
+            torque = _mean_nm(weaker(left), errors, speed)
             for joint in self._loose:
                 torque[joint] = self.servo_nm[joint]
-            left = self._servos.voltage(torque)
-            found = left * kp, left * kd, back_emf, left * most
-        return found
+            return self._servos.voltage(torque)
+
+        left = 1.0
+        for _ in range(SETTLED):  # Steffensen's method
+            once = then(left)
+            step, twice = once - left, then(once)
+            bend = (twice - once) - step
+            left = left - step**2 / bend if abs(bend) > 1e-12 else twice
+        return weaker(left)
 
 
 class HiddenDrive:

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from diagnosis.replay.servos import columns
+from diagnosis.replay.columns import columns
 
 
 @pytest.mark.parametrize(

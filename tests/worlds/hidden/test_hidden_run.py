@@ -260,6 +260,30 @@ def test_an_elastic_joint_sags_behind_its_encoder():
     assert 50.0 * (motor - q) == pytest.approx(M * G * L * np.sin(q), rel=0.02)
 
 
+@pytest.mark.parametrize("share", [0.2, 0.9])
+def test_a_supply_gives_way_under_what_the_servo_holds(share):
+    plant, level = hidden_plant("pendulum"), np.full(ROWS, 0.5)
+    weak = Hidden("supply_sag", "supply", {"share": share})
+    sagged = run(weak, CALM, start=0.5, table=level)
+    q, held_nm = sagged.position_rad[-1, 0], M * G * L * np.sin(sagged.position_rad[-1])
+    voltage = 1 - share * held_nm[0] / plant.max_torque_nm[0]
+    assert KP * voltage * (0.5 - q) == pytest.approx(held_nm[0], rel=0.02)
+    assert voltage < 1 - 0.1 * share
+
+
+def test_friction_by_the_angle_holds_more_further_up():
+    """With 1.1 times the weight at 0.3 rad it holds there, and not at 0.9 rad."""
+    middle_rad = float(np.mean(hidden_plant("pendulum").range_rad[0]))
+    at_03 = 1.1 * M * G * L * np.sin(0.3)
+    for factor, stays in ((0.1, False), (10.0, True)):
+        torque = at_03 * factor ** (middle_rad - 0.3)
+        rubs = Hidden("angle_friction", JOINT, {"torque": torque, "factor": factor})
+        low = run(rubs, start=0.3, table=np.full(ROWS, 0.3))
+        assert abs(low.position_rad[-1, 0] - 0.3) < 5e-4
+        high = run(rubs, start=0.9, table=np.full(ROWS, 0.9))
+        assert (abs(high.position_rad[-1, 0] - 0.9) < 5e-4) == stays
+
+
 def test_no_more_mass_is_taken_than_a_body_has():
     with pytest.raises(BadValueError, match=f"9 kg cannot be taken .* '{LINK}'"):
         run(Hidden("payload_mass", LINK, {"mass": -9.0}))

@@ -37,7 +37,7 @@ class SupplySag(HiddenKind):
     """The servos' supply loses voltage in proportion to the current that they take.
 
     Source: a source with an inner resistance; Hughes and Drury 2019, "Electric motors
-    and drives", chapter 2.
+    and drives".
     """
 
     name = "supply_sag"
