@@ -27,7 +27,7 @@ from diagnosis.verdict import Amount
 from groundwalk.blas import one_blas_thread
 from groundwalk.errors import BadRecordingError, BadValueError
 
-SIMULATED_S = 6.0
+SIMULATED_S = 8.0
 """Most seconds of the recordings that are simulated with effects, the liveliest part of
 each; what they show grows with the time."""
 

@@ -14,7 +14,7 @@ from diagnosis.residuals.predictor import Predictor
 from diagnosis.traces.split import shortened
 from diagnosis.traces.trace import Trace
 
-SIMULATED_S = 6.0
+SIMULATED_S = 9.0
 """Most seconds of all proposed motions that are simulated with effects; what they show
 grows with the time."""
 

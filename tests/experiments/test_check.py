@@ -68,8 +68,8 @@ KEYS = (
         (evidence, "MILDEST", 4),
         (evidence, "POWERS", (0.25, 6.0)),
         (evidence, "POWERS", (0.7, 2.2)),
-        (sys.modules["diagnosis.check.check"], "SIMULATED_S", 3.0),
-        (sys.modules["diagnosis.check.check"], "SIMULATED_S", 12.0),
+        (sys.modules["diagnosis.check.check"], "SIMULATED_S", 4.0),
+        (sys.modules["diagnosis.check.check"], "SIMULATED_S", 16.0),
     ],
 )
 def test_a_factor_of_two_hardly_changes_sizes(
