@@ -1,4 +1,4 @@
-"""Effects at bodies: mass and centre of mass, drag, and pushes from outside."""
+"""Effects at bodies: mass, where it sits and how far it spreads, drag, and pushes."""
 
 from collections.abc import Sequence
 
@@ -19,6 +19,9 @@ more than it weighs, and a model may state far too little."""
 
 MOST_TAKEN = 0.9
 """Largest share of a body's mass that the robot may lack: something is left of it."""
+
+_HINGE = mujoco.mjtJoint.mjJNT_HINGE.value
+_SLIDE = mujoco.mjtJoint.mjJNT_SLIDE.value
 
 _ABOUT_ITS_CENTRE = 1
 """MuJoCo's `body_simple` for a simple body that can rotate; 2 is for one that only
@@ -98,17 +101,54 @@ class ComOffset(NumberEffect, BodyEffect):
         MuJoCo's mass matrix has no entries for the coupling that an offset of a simple
         body causes. `simple="false"` in the model avoids this.
         """
-        return tuple(
-            name
-            for name in super().places(plant, traces)
-            if plant.model.body(name).simple[0] != _ABOUT_ITS_CENTRE
-        )
+        every = super().places(plant, traces)
+        return tuple(name for name in every if not _is_simple(plant, name))
 
     def tolerance(self, plant: Plant, place: str) -> float:
         """1 % of the centre's distance from the joint and of the radius of gyration."""
         body = plant.model.body(place)
         gyration_m = float(np.sqrt(body.inertia.max() / body.mass[0]))
         return 0.01 * (gyration_m + float(np.linalg.norm(body.ipos)))
+
+
+class LinkInertia(NumberEffect, BodyEffect):
+    """A factor on the rotational inertia of a body about its centre of mass.
+
+    Mass and centre of mass stay as they are: the same mass is spread wider, or less
+    wide. With any factor above 0 the inertia remains one that a body can have, since
+    its pseudo-inertia, the matrix of second moments of the mass, stays positive
+    (Wensing, Kim and Slotine 2018, "Linear matrix inequalities for physically
+    consistent inertial parameter identification"). In MuJoCo `body_inertia`.
+    """
+
+    name = "link_inertia"
+    shown_by = "accelerations"
+    native = True
+    by_inverse_dynamics = True
+    rarity_nats = 1.0
+    quantity = "body_inertia"
+    combined = np.multiply
+    usual = (Parameter("factor", "1", 0.05, 20.0, 1.0, 1.5, logarithmic=True),)
+    words = EffectWords(
+        "rotational inertia",
+        "{body} has {factor} times its rotational inertia {usual}",
+        "The mass is right, but sits closer to its centre or further from it, as where "
+        "a model has a box in place of the part.",
+        "Let the part swing on two threads, and take its inertia from the period; or "
+        "export it from CAD with the right materials.",
+    )
+
+    def places(self, plant: Plant, traces: Sequence[Trace]) -> tuple[str, ...]:
+        """Names of bodies that can turn about more than one axis.
+
+        With one it is the same as rotor inertia there. Of a body that MuJoCo's compiler
+        has made simple the inertia is fixed.
+        """
+        return tuple(
+            name
+            for name in super().places(plant, traces)
+            if _axes(plant, name) > 1 and not _is_simple(plant, name)
+        )
 
 
 class Drag(NumberEffect, BodyEffect):
@@ -186,14 +226,30 @@ class ExternalForce(BodyEffect):
             copies.outside.pushes[row].append(push)
 
 
+def _is_simple(plant: Plant, name: str) -> bool:
+    """Whether MuJoCo takes a body's entries of the mass matrix as constant."""
+    return bool(plant.model.body(name).simple[0] == _ABOUT_ITS_CENTRE)
+
+
 def _on_one_joint(plant: Plant, name: str) -> bool:
     """Whether a body can only turn about one axis, or slide along one line."""
+    joints = _joints_below(plant, name)
+    return len(joints) == 1 and joints[0] in (_HINGE, _SLIDE)
+
+
+def _axes(plant: Plant, name: str) -> int:
+    """Number of axes about which a body can turn; parallel ones count as several."""
+    axes = {_HINGE: 1, _SLIDE: 0}
+    return sum(axes.get(kind, 3) for kind in _joints_below(plant, name))
+
+
+def _joints_below(plant: Plant, name: str) -> list[int]:
+    """MuJoCo's types of all joints that move a body, from its own to the base's."""
     model = plant.model
     body = int(model.body(name).id)
-    joints = []
+    joints: list[int] = []
     while body > 0:
         first = int(model.body_jntadr[body])
         joints += list(model.jnt_type[first : first + int(model.body_jntnum[body])])
         body = int(model.body_parentid[body])
-    kinds = mujoco.mjtJoint.mjJNT_HINGE.value, mujoco.mjtJoint.mjJNT_SLIDE.value
-    return len(joints) == 1 and joints[0] in kinds
+    return joints

@@ -59,6 +59,7 @@ BUILT_IN: Mapping[str, Effect] = MappingProxyType(
             joints.Armature(),
             bodies.PayloadMass(),
             bodies.ComOffset(),
+            bodies.LinkInertia(),
             joints.JointSpring(),
             joints.TorqueOffset(),
             ripple.Cogging(),

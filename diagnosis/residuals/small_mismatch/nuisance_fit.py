@@ -209,7 +209,8 @@ class NuisanceFit:
         """The point after steps as long as these help, by a `share` of the energy."""
         for _ in range(MOST_STEPS):
             other = self._step(now)
-            if other.goal > now.goal - max(share * now.goal, 2 * ENOUGH_NATS):
+            # >=: of a simulation that blew up, two nats less is the same number
+            if other.goal >= now.goal - max(share * now.goal, 2 * ENOUGH_NATS):
                 break
             now = now.followed(other)
         return now

@@ -30,6 +30,7 @@ def everywhere(plant, joint, body):
         ("torque_limit", joint, 0.8),
         ("payload_mass", body, 0.2),
         ("com_offset", body, 0.01, 0.02, 1 / 300),
+        ("link_inertia", body, 2.5),
         ("joint_spring", joint, 0.3, 0.1),
         ("end_stop", joint, 0.3, 1.0),
         ("ground_slope", "world", 0.1, 0.05),

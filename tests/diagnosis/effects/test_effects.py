@@ -50,6 +50,7 @@ PARAMETERS = {
     "armature": "inertia",
     "payload_mass": "mass",
     "com_offset": "x y z",
+    "link_inertia": "factor",
     "joint_spring": "stiffness rest",
     "torque_offset": "torque",
     "cogging": "torque per_turn phase",

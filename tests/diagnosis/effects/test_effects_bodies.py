@@ -252,3 +252,39 @@ def test_a_robot_may_lack_a_part_of_a_body_but_not_all_of_it():
     lighter = changed(plant, ("payload_mass", "arm", -0.5 * MASS_KG))
     whole, half = (torque_and_inertia(lighter, row)[0] for row in (0, 1))
     assert half == pytest.approx(0.5 * whole)
+
+
+def test_inertia_of_a_link_without_its_weight():
+    turned = ("link_inertia", "arm", 3.0), ("link_inertia", "arm", 0.5)
+    torque, inertia = expected(MASS_KG, CENTRE_M)
+    for rows, factor in ((turned, 1.5), (turned[:1], 3.0)):
+        found = torque_and_inertia(changed(arm(), *rows), 1)
+        wanted = torque, inertia + (factor - 1) * CENTRAL_INERTIA
+        np.testing.assert_allclose(found, wanted, rtol=1e-9)
+
+
+ELBOW = """
+<mujoco><worldbody><body name="cube" pos="1 0 0"><freejoint/>
+    <geom type="box" size=".1 .1 .1"/></body>
+  <body name="upper"><joint name="shoulder" axis="0 1 0"/>
+    <geom type="box" size=".1 .1 .1" pos=".1 0 0"/>
+    <body name="lower" pos=".3 0 0"><joint name="elbow" axis="0 1 0"/>
+      <geom type="box" size=".1 .1 .1" pos=".1 0 0"/></body></body>
+</worldbody></mujoco>"""
+
+
+def test_inertia_of_a_body_is_tried_where_two_joints_turn_it():
+    """On one hinge it is rotor inertia; of a simple body MuJoCo keeps it fixed."""
+    inertia = effect("link_inertia")
+    assert inertia.places(stack(), []) == ()
+    spec = mujoco.MjSpec.from_string(ELBOW)
+    plant = Plant("elbow", spec, ("shoulder", "elbow"), Servo.ideal(2))
+    assert inertia.places(plant, []) == ("lower",)
+    model, data = at_rest(changed(plant, ("link_inertia", "lower", 2.0)), 1)
+    whole, nominal = np.zeros((8, 8)), np.zeros((8, 8))
+    mujoco.mj_fullM(model, data, whole)
+    model, data = at_rest(changed(plant, ("link_inertia", "lower", 2.0)), 0)
+    mujoco.mj_fullM(model, data, nominal)
+    block = np.ix_(plant.dofs, plant.dofs)
+    own = 1000 * 0.2**3 * 0.2**2 / 6  # not only on the diagonal, as a rotor's would be
+    np.testing.assert_allclose((whole - nominal)[block], own, rtol=1e-9)

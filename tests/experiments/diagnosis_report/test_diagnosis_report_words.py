@@ -63,6 +63,7 @@ PARAMETERS = {
     "armature": ("inertia",),
     "payload_mass": ("mass",),
     "com_offset": ("x", "y", "z"),
+    "link_inertia": ("factor",),
     "joint_spring": ("stiffness", "rest"),
     "torque_offset": ("torque",),
     "cogging": ("torque", "per_turn", "phase"),
@@ -79,7 +80,7 @@ PARAMETERS = {
     "drag": ("coefficient",),
     "torque_scale": ("factor",),
 }
-BODIES = {"payload_mass", "com_offset", "external_force", "drag"}
+BODIES = {"payload_mass", "com_offset", "link_inertia", "external_force", "drag"}
 ELSEWHERE = {
     "command_latency", "sensor_delay", "gyro_bias", "contact_friction",
     "contact_compliance", "ground_slope", "supply_sag", "uneven_ground",

@@ -50,13 +50,13 @@ def run(*effects, engine="mujoco", step_s=STEP_S, start=0.3, table=None):
 
 @functools.cache
 def solved(
-    *, mass=0.0, z=0.0, armature=0.0, viscous=0.0, kp=KP, kd=KD, spring=(0.0, 0.0),
-    pitch=0.0, drag=0.0, delay=0.0, push=0.0, fade=0.0, most=np.inf, start=0.3,
-    asking=command,
+    *, mass=0.0, z=0.0, armature=0.0, more=0.0, viscous=0.0, kp=KP, kd=KD,
+    spring=(0.0, 0.0), pitch=0.0, drag=0.0, delay=0.0, push=0.0, fade=0.0,
+    most=np.inf, start=0.3, asking=command,
 ):  # fmt: skip
     """Positions at the ticks by the equation of motion of a driven pendulum."""
     reach = L - z
-    inertia = OWN + (M + mass) * reach**2 + armature
+    inertia = OWN + (M + mass) * reach**2 + armature + more
     asked = asking(np.arange(ROWS) * TICK_S)
 
     def motion(t, state):
@@ -100,6 +100,7 @@ SMOOTH = [
     ([Hidden("armature", JOINT, {"inertia": 0.02})], {"armature": 0.02}),
     ([Hidden("payload_mass", LINK, {"mass": 0.1})], {"mass": 0.1}),
     ([Hidden("payload_mass", LINK, {"mass": -0.1})], {"mass": -0.1}),
+    ([Hidden("link_inertia", LINK, {"factor": 6.0})], {"more": 5 * OWN}),
     ([Hidden("com_offset", LINK, {"x": 0, "y": 0, "z": 0.03})], {"z": 0.03}),
     (
         [Hidden("joint_spring", JOINT, {"stiffness": 0.5, "rest": -0.2})],

@@ -108,6 +108,37 @@ class ComOffset(_Weight):
         return dict(zip("xyz", shift.tolist(), strict=True))
 
 
+class LinkInertia(HiddenKind):
+    """Rotational inertia of a body about its centre of mass, `factor` times as large.
+
+    Sets of concealed cases before 5 do not have it.
+    """
+
+    name = "link_inertia"
+    since = 5
+    in_torques = True
+    place = "body"
+    quantities = (Quantity("factor", "1", 1e-3, 1000.0),)
+
+    def change_part(self, part: Any, values: Values) -> None:
+        """Scale the inertia, whether its principal moments or its matrix are given."""
+        if not part.explicitinertial:
+            raise BadValueError(
+                f"link_inertia: the model states no inertia of the body '{part.name}'"
+            )
+        part.inertia = part.inertia * values["factor"]
+        part.fullinertia = part.fullinertia * values["factor"]
+
+    def size(self, s: Setting) -> dict[str, float]:
+        """Factor of 1.2 (hard to detect) to 5 (easy), or as much below 1."""
+        return {"factor": (1 + s.part(4.0, 0.2)) ** s.sign}
+
+    def shows(self, plant: HiddenPlant, scales: Scales, spot: Spot) -> bool:
+        """Whether several joints turn the body; with one it is rotor inertia."""
+        many = plant.floating or scales.carriers(spot.body) > 1
+        return scales.moves(spot.body) and many
+
+
 _LASTING_SHARE = 0.3
 """Share of randomly drawn forces that act during the whole recording, where possible.
 The others are short pushes."""
