@@ -128,7 +128,7 @@ class LinkInertia(NumberEffect, BodyEffect):
     rarity_nats = 1.0
     quantity = "body_inertia"
     combined = np.multiply
-    usual = (Parameter("factor", "1", 0.05, 20.0, 1.0, 1.5, logarithmic=True),)
+    usual = (Parameter("factor", "1", 0.01, 100.0, 1.0, 1.5, logarithmic=True),)
     words = EffectWords(
         "rotational inertia",
         "{body} has {factor} times its rotational inertia {usual}",
