@@ -125,7 +125,6 @@ class LinkInertia(NumberEffect, BodyEffect):
     shown_by = "accelerations"
     native = True
     by_inverse_dynamics = True
-    rarity_nats = 1.0
     quantity = "body_inertia"
     combined = np.multiply
     usual = (Parameter("factor", "1", 0.01, 100.0, 1.0, 1.5, logarithmic=True),)

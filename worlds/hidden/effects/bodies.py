@@ -108,16 +108,27 @@ class ComOffset(_Weight):
         return dict(zip("xyz", shift.tolist(), strict=True))
 
 
-class LinkInertia(HiddenKind):
+class _OnSeveralJoints(HiddenKind):
+    """Hidden physics of a body that with one joint looks like that of the joint."""
+
+    place = "body"
+
+    def shows(self, plant: HiddenPlant, scales: Scales, spot: Spot) -> bool:
+        """Whether several joints move the body, and it does move."""
+        many = plant.floating or scales.carriers(spot.body) > 1
+        return scales.moves(spot.body) and many
+
+
+class LinkInertia(_OnSeveralJoints):
     """Rotational inertia of a body about its centre of mass, `factor` times as large.
 
+    With one joint it is rotor inertia.
     Sets of concealed cases before 5 do not have it.
     """
 
     name = "link_inertia"
     since = 5
     in_torques = True
-    place = "body"
     quantities = (Quantity("factor", "1", 1e-3, 1000.0),)
 
     def change_part(self, part: Any, values: Values) -> None:
@@ -132,11 +143,6 @@ class LinkInertia(HiddenKind):
     def size(self, s: Setting) -> dict[str, float]:
         """Factor of 1.2 (hard to detect) to 5 (easy), or as much below 1."""
         return {"factor": (1 + s.part(4.0, 0.2)) ** s.sign}
-
-    def shows(self, plant: HiddenPlant, scales: Scales, spot: Spot) -> bool:
-        """Whether several joints turn the body; with one it is rotor inertia."""
-        many = plant.floating or scales.carriers(spot.body) > 1
-        return scales.moves(spot.body) and many
 
 
 _LASTING_SHARE = 0.3
@@ -186,13 +192,15 @@ class ExternalForce(HiddenKind):
         return scales.moves(spot.body)
 
 
-class Drag(HiddenKind):
-    """A force on a body, opposed and proportional to its velocity."""
+class Drag(_OnSeveralJoints):
+    """A force on a body, opposed and proportional to its velocity.
+
+    With one joint it is viscous friction.
+    """
 
     name = "drag"
     rank = 26
     in_torques = True
-    place = "body"
     quantities = (Quantity("coefficient", "N s/m", 0.0),)
 
     def push(self, values: Values) -> Push:
@@ -204,8 +212,3 @@ class Drag(HiddenKind):
         """Drag at 1 m/s of 2 % (hard to detect) to 40 % (easy) of the moving weight."""
         weight_n = s.scales.moving_kg * GRAVITY_M_S2
         return {"coefficient": s.part(0.4, 0.02) * weight_n}
-
-    def shows(self, plant: HiddenPlant, scales: Scales, spot: Spot) -> bool:
-        """Whether several joints move the body; with one, drag is viscous friction."""
-        many = plant.floating or scales.carriers(spot.body) > 1
-        return scales.moves(spot.body) and many
