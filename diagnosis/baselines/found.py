@@ -4,15 +4,15 @@ import time
 from collections.abc import Sequence
 
 import numpy as np
-from scipy.stats import norm
 
 from diagnosis.effects.library import effect
 from diagnosis.effects.parts import PlacedEffect
 from diagnosis.plant.plant import Plant
 from diagnosis.traces.trace import Trace
 from diagnosis.verdict import Estimate, Found, Recordings, Verdict
+from groundwalk.distributions import normal_ppf
 
-NORMAL_80 = float(norm.ppf(0.9))
+NORMAL_80 = float(normal_ppf(0.9))
 """Half width of an 80 % interval of a normal distribution, in standard deviations."""
 
 _LARGEST = 1e12

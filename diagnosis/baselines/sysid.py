@@ -14,7 +14,6 @@ from types import ModuleType
 from typing import Any
 
 import numpy as np
-from scipy.stats import norm
 
 from diagnosis.baselines.found import NORMAL_80, found_effect, verdict_of
 from diagnosis.baselines.sysid_models import (
@@ -30,6 +29,7 @@ from diagnosis.traces.reference import Reference
 from diagnosis.traces.trace import Trace
 from diagnosis.verdict import Verdict
 from groundwalk.arrays import FloatArray
+from groundwalk.distributions import normal_ppf
 from groundwalk.errors import GroundwalkError
 
 SECONDS, FLOATING_SECONDS = 8.0, 2.0
@@ -57,7 +57,7 @@ damping."""
 LEAST_CHANGE = 0.1
 """Smallest change of a parameter, in typical sizes, that counts as a missing effect."""
 
-_NORMAL_95 = float(norm.ppf(0.975))
+_NORMAL_95 = float(normal_ppf(0.975))
 _WORST = 1e3
 """Largest residual, in standard deviations of the noise; it replaces larger ones, and
 those of simulations that diverge."""

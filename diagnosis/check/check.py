@@ -105,14 +105,17 @@ def _sizes(
     lasted_s = [sum(one.duration_s for one in every) for every in (fit, some)]
     predictor = predictor_of(plant, some, channels, threads=threads)
     weight = lasted_s[0] / max(lasted_s[1], 1e-9)
+    predictor.correct()
+    off = _off(predictor)
     evidence = evidence_of(predictor, tries_of(predictor), max(weight, 1.0))
-    off = _off(predictor_of(plant, some, channels, threads=threads))
     return evidence.sizes(sum(trace.ticks for trace in fit)), off
 
 
 def _off(predictor: Predictor) -> dict[str, float]:
-    """By how many times the noise the nominal sim is off in each channel."""
-    predictor.correct()  # what is wrong with the simulation itself is not the model's
+    """By how many times the noise the nominal sim is off in each channel.
+
+    What is wrong with the simulation itself is not the model's: see `correct`.
+    """
     (left,) = predictor.residuals([()])
     return {
         name: float(np.sqrt(np.mean(left[own] ** 2)))

@@ -173,8 +173,11 @@ def _power(first: Smallest, again: Signature) -> float:
 def evidence_of(
     predictor: Predictor, tries: Sequence[PlacedEffect], weight: float
 ) -> Evidence:
-    """What the recordings of a predictor would show of effects in tried sizes."""
-    predictor.correct()
+    """What the recordings of a predictor would show of effects in tried sizes.
+
+    The predictor knows the nominal model's integration error (`correct`), but not what
+    wrong start states change.
+    """
     predictor.doubt(tolerances=False)
     found = _of_whole(predictor, tries)
     drawn = predictor.drawn(np.random.default_rng(SEED))

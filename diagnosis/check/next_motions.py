@@ -43,6 +43,7 @@ def next_motions(
     whole = [one.trace for one in motions]
     some = shortened(whole, SIMULATED_S, LEAST_S)
     predictor = Predictor(plant, some, _positions(channels, plant), threads=threads)
+    predictor.correct()
     lasted_s = [sum(one.duration_s for one in every) for every in (whole, some)]
     weight = FITTED * lasted_s[0] / lasted_s[1]
     tries = [one.placed for one in now.evidence.found]

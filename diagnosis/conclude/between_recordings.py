@@ -11,7 +11,6 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
-from scipy.stats import chi2, f, t
 
 from diagnosis.effects.library import lasts
 from diagnosis.effects.parts import PlacedEffect
@@ -19,6 +18,7 @@ from diagnosis.residuals.predictor import Model, Predictor
 from diagnosis.residuals.ties import kinds_of
 from diagnosis.search.fitting import FittedModel
 from groundwalk.arrays import FloatArray, IntArray
+from groundwalk.distributions import chi2_sf, f_sf, t_ppf
 
 LEVEL = 0.05
 """Probability at which recordings of one robot would scatter as much by noise alone;
@@ -80,14 +80,14 @@ def may_be_scatter(seen: Sequence[Sizes]) -> bool:
             own = one.recording == number
             within = _plus(within, _scatter(Sizes(*(part[own] for part in one))))
     (scatter, free), (inside, more) = between, within
-    if not free or chi2.sf(scatter, free) > LEVEL:
+    if not free or chi2_sf(scatter, free) > LEVEL:
         return False
-    if more and f.sf(scatter / free / max(inside / more, 1.0), free, more) > LEVEL:
+    if more and f_sf(scatter / free / max(inside / more, 1.0), free, more) > LEVEL:
         scatter, free = _plus(between, within)
     total = float(seen[0].weights.sum())
     error = np.sqrt(scatter / free / max(total, 1e-12))
     mean = float(seen[0].weights @ seen[0].sizes) / max(total, 1e-12)
-    return bool(abs(mean) < error * t.isf(LEVEL / 2, free))
+    return bool(abs(mean) < error * -t_ppf(LEVEL / 2, free))
 
 
 def _plus(one: tuple[float, int], other: tuple[float, int]) -> tuple[float, int]:

@@ -13,11 +13,11 @@ from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
-from scipy.stats import norm, t
 
 from diagnosis.residuals.predictor import Predictor
 from diagnosis.search.chance import ALIKE, FEWEST_BLOCKS, independent_blocks
 from groundwalk.arrays import FloatArray, IntArray
+from groundwalk.distributions import normal_ppf, t_ppf
 
 Unit = Literal["blocks of time", "recordings"]
 """What is drawn again at random: each counts as independent of the others."""
@@ -110,7 +110,7 @@ def _wider(units: int) -> float:
     if units < 2:
         return 1.0
     tail = (1 + LEVEL) / 2
-    student = float(t.ppf(tail, units - 1) / norm.ppf(tail))
+    student = float(t_ppf(tail, units - 1) / normal_ppf(tail))
     return student * float(np.sqrt(units / (units - 1)))
 
 

@@ -11,7 +11,6 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
-from scipy.stats import chi2, f, t
 
 from diagnosis.effects.library import lasts
 from diagnosis.residuals.predictor import Model, Predictor
@@ -19,6 +18,7 @@ from diagnosis.residuals.ties import groups_of, number_of_values
 from diagnosis.search.fitting import FittedModel, fit_all
 from diagnosis.search.judging import places_of_effects
 from groundwalk.arrays import BoolArray, FloatArray
+from groundwalk.distributions import chi2_sf, f_sf, t_sf
 
 LEVEL = 0.05
 """Probability at which the best of all effects at their places would seem a change by
@@ -86,13 +86,13 @@ def _same_size(
         mean = float(weights[own] @ sizes[own]) / total
         scatter += float(weights[own] @ (sizes[own] - mean) ** 2)
         known += total - float(weights[own] @ weights[own]) / total
-    if chi2.sf(scatter, free) > LEVEL:
+    if chi2_sf(scatter, free) > LEVEL:
         return False
     between = max(scatter - free, 0.0) / max(known, 1e-12)
     rough = 1 / (1 / weights + between)
     means = [rough[own] @ sizes[own] / rough[own].sum() for own in sides]
     error = np.sqrt(sum(1 / rough[own].sum() for own in sides))
-    return bool(2 * t.sf(abs(means[1] - means[0]) / error, free) > level)
+    return bool(2 * t_sf(abs(means[1] - means[0]) / error, free) > level)
 
 
 def _gains_no_more(told: Told, level: float) -> bool:
@@ -104,10 +104,10 @@ def _gains_no_more(told: Told, level: float) -> bool:
     """
     count, before = len(told.is_healthy), float(told.is_healthy.sum())
     free, single = count - 2, float(told.single.sum())
-    if count < FEWEST or chi2.sf(2 * single, told.values * free) > LEVEL:
+    if count < FEWEST or chi2_sf(2 * single, told.values * free) > LEVEL:
         return False
     ratio = told.shared * before / count * free / max(single, 1e-12)
-    return bool(f.sf(ratio, told.values, free) > level)
+    return bool(f_sf(ratio, told.values, free) > level)
 
 
 def no_change(

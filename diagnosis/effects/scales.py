@@ -3,7 +3,7 @@
 Where recordings state known loads, the robot with the heaviest one counts.
 """
 
-from collections.abc import Iterator
+from functools import lru_cache
 
 import mujoco
 import numpy as np
@@ -128,10 +128,15 @@ def _gravity_on(model: mujoco.MjModel, data: mujoco.MjData, joint: str) -> float
     return weight * float(np.linalg.norm(arm - axis * (axis @ arm)))
 
 
-def _at_rest(plant: Plant) -> Iterator[tuple[mujoco.MjModel, mujoco.MjData]]:
-    """The robot model at rest in its reference pose: bare, and with each known load."""
-    for loads in ({}, *plant.loads):
-        model = model_under(plant, loads)
-        data = mujoco.MjData(model)
+@lru_cache(maxsize=4)
+def _at_rest(plant: Plant) -> tuple[tuple[mujoco.MjModel, mujoco.MjData], ...]:
+    """The robot model at rest in its reference pose: bare, and with each known load.
+
+    Kept for the plants asked for last: bounds of effects ask a thousand times. None
+    may be changed.
+    """
+    models = [model_under(plant, loads) for loads in ({}, *plant.loads)]
+    posed = tuple((model, mujoco.MjData(model)) for model in models)
+    for model, data in posed:
         mujoco.mj_forward(model, data)
-        yield model, data
+    return posed

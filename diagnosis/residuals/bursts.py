@@ -8,12 +8,12 @@ the first detector, `onsets` finds moments from which on the error is large.
 from itertools import chain
 
 import numpy as np
-from scipy.stats import chi2
 
 from diagnosis.effects.parts import Interval
 from diagnosis.residuals.predictor import Predictor
 from diagnosis.traces.trace import stretches
 from groundwalk.arrays import FloatArray
+from groundwalk.distributions import chi2_isf
 
 BIN_S = 0.05
 """Length of the bins [s] in which squared residuals are summed to find bursts."""
@@ -74,7 +74,7 @@ def _bursts(
     found: list[tuple[float, Span, str]] = []
     for number, trace in enumerate(predictor.traces):
         energy, scored = binned(predictor, residual, number, channel)
-        by_chance = chi2.isf(CHANCE / len(scored), np.maximum(scored, 1))
+        by_chance = chi2_isf(CHANCE / len(scored), np.maximum(scored, 1))
         least = max(STANDS_OUT * np.median(energy), LEAST * scored.mean())
         limit = np.maximum(by_chance, least)
         for first, last in stretches(energy > limit):

@@ -13,12 +13,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.stats import chi2
 
 from diagnosis.effects.parts import PlacedEffect
 from diagnosis.residuals.torques.healthy_torques import HealthyTorques
 from diagnosis.traces.windows import FLOATING_WINDOW_S, Run
 from groundwalk.arrays import BoolArray, FloatArray, IntArray
+from groundwalk.distributions import chi2_sf
 from groundwalk.errors import BadRecordingError
 
 WAVES = 4
@@ -222,7 +222,7 @@ def _apart(
     each = [seen[:, p].reshape(len(seen), -1) for p in parts]
     told = sum(float(np.sum((spread @ one) * one)) for one in each)
     scatter = count * float(np.sum((apart @ spread) * apart))
-    if chi2.sf(scatter, max(told * (count - 1), 1e-12)) > LEVEL:
+    if chi2_sf(scatter, max(told * (count - 1), 1e-12)) > LEVEL:
         return np.zeros_like(apart)
     return np.asarray(apart @ spread / np.sqrt(1 - 1 / count))
 

@@ -4,7 +4,6 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 import numpy as np
-from scipy.stats import chi2
 
 from diagnosis.effects.library import all_effects, effect
 from diagnosis.residuals.predictor import Model, Predictor
@@ -14,6 +13,7 @@ from diagnosis.search.hooks import Hooks
 from diagnosis.search.result import VALUE_NATS, Judged, pack, ranked, unpack
 from diagnosis.search.rules import Rules
 from groundwalk.arrays import FloatArray
+from groundwalk.distributions import chi2_isf
 
 CONTRADICTED = 3.0
 """Loss [nats] on the selection data from which on they contradict a model: odds of 20
@@ -25,7 +25,7 @@ def gain_of_noise(candidates: int, values: int = 1) -> float:
 
     Each has as many `values` that are fitted.
     """
-    return 0.5 * float(chi2.isf(0.01 / max(candidates, 1), values))
+    return 0.5 * float(chi2_isf(0.01 / max(candidates, 1), values))
 
 
 def places_of_effects(predictor: Predictor) -> int:

@@ -4,9 +4,9 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy.special import binom
-from scipy.stats import chi2
 
 from groundwalk.arrays import BoolArray, FloatArray
+from groundwalk.distributions import chi2_ppf
 
 _ORDERS = (3, 5)
 """Orders of the differences that noise is estimated from; the smaller result counts.
@@ -135,7 +135,7 @@ def _quiet_power(time_s: FloatArray, values: FloatArray, order: int) -> float:
     if whole < 4 * _BLOCK:
         there = squares[np.isfinite(squares)]
         # the median of a squared standard normal variable
-        return float(np.median(there) / chi2.ppf(0.5, 1)) if len(there) else 0.0
+        return float(np.median(there) / chi2_ppf(0.5, 1)) if len(there) else 0.0
     blocks = squares[:whole].reshape(-1, _BLOCK)
     full = blocks[np.isfinite(blocks).sum(axis=1) > _BLOCK // 2]
     power = np.nanmean(full, axis=1) if len(full) else np.zeros(0)
@@ -143,7 +143,7 @@ def _quiet_power(time_s: FloatArray, values: FloatArray, order: int) -> float:
     if not len(power):
         return 0.0
     freedom = _BLOCK / _correlated(order)
-    low = chi2.ppf(_QUIET, freedom) / freedom
+    low = chi2_ppf(_QUIET, freedom) / freedom
     return float(np.quantile(power, _QUIET) / low)
 
 

@@ -4,13 +4,12 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
 
-from scipy.stats import chi2
-
 from diagnosis.conclude.estimates import Z_80
 from diagnosis.effects import effect as kind_of
 from diagnosis.verdict import Estimate, Found
 from experiments.diagnosis_report.numbers import DASH, estimate_text
 from experiments.diagnosis_report.place_words import place_words
+from groundwalk.distributions import chi2_sf
 
 LEVEL = 0.01
 """Probability with which recordings that agree would be called different."""
@@ -53,7 +52,7 @@ def agree(estimate: Estimate) -> bool | None:
         towards = one.high - one.value if far > 0 else one.value - one.low
         width = towards or one.high - one.low
         total += (far * Z_80 / width) ** 2
-    return bool(chi2.sf(total, len(known) - 1) > LEVEL)
+    return bool(chi2_sf(total, len(known) - 1) > LEVEL)
 
 
 def _alone(estimate: Estimate) -> str:
