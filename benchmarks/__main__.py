@@ -2,13 +2,13 @@
 
 import sys
 
-from benchmarks import candidate_fit, control_loop, grounded_loop
+from benchmarks import candidate_fit, check_recordings, control_loop, grounded_loop
 
 
 def main() -> int:
     """Run all benchmarks, print their reports, and return the exit status."""
     failed = 0
-    for benchmark in (control_loop, grounded_loop, candidate_fit):
+    for benchmark in (control_loop, grounded_loop, candidate_fit, check_recordings):
         text, passes = benchmark.report(benchmark.measure())
         print(text, flush=True)
         failed += not passes
