@@ -13,7 +13,7 @@ from diagnosis.residuals.predictor import Predictor
 from diagnosis.residuals.small_mismatch.usual_errors import is_usual
 from diagnosis.residuals.ties import groups_of
 from diagnosis.search.fitting import FittedModel
-from diagnosis.search.many.pruning import gains_of_each
+from diagnosis.search.many.losses import Losses
 from diagnosis.search.result import Judged, SearchResult
 from diagnosis.verdict import Found, VerdictKind, When
 
@@ -149,7 +149,9 @@ def believed_effects(
     if refitted is None:
         return ()
     known = searched.winner.keys if searched.winner else frozenset()
-    gains = {one.key: gain for own, gain in gains_of_each(refitted) for one in own}
+    gains = {
+        one.key: gain for own, gain in Losses(refitted).without_each() for one in own
+    }
     values = estimates(both, refitted)
     first_s = min(float(trace.time_s[0]) for trace in both.traces)
     last_s = max(float(trace.time_s[-1]) for trace in both.traces)

@@ -93,7 +93,7 @@ def tied(plant: Plant, effects: Sequence[PlacedEffect], level: Level) -> Model:
     """
     names, groups = labels(plant, level), dict[str, list[PlacedEffect]]()
     for placed in effects:
-        shares = effect(placed.name).of_motor
+        shares = effect(placed.name).of_motor and placed.place in names
         group = names[placed.place] if shares else placed.place
         groups.setdefault(group, []).append(placed)
     found = []

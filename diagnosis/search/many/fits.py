@@ -124,9 +124,13 @@ class Fits:
             part.trusting(trust)
             part.doubt(tolerances=False)
 
-    def ebic(self, judged: Judged) -> Ebic:
-        """The criterion where a model leaves what this one leaves."""
-        return Ebic.of(self.fit, self.judge.select, judged.fit.residual)
+    def ebic(self, judged: Judged, repeats: bool = True) -> Ebic:
+        """The criterion where a model leaves what this one leaves.
+
+        Errors that come again count each time if they may be `repeats`. So they do as
+        long as a model grows: what is missing is much, and comes again as well.
+        """
+        return Ebic.of(self.fit, self.judge.select, judged.fit.residual, repeats)
 
     def is_better(self, larger: Judged, best: Judged) -> bool:
         """Whether all data speak for the larger model, and the selection data do."""

@@ -86,3 +86,11 @@ def test_a_tie_named_after_a_joint_leaves_that_joint_alone():
         coordinates = Coordinates(arm(), model)
         assert len(coordinates.parameters) == 2
         assert len(groups_of(model)) == 2
+
+
+@pytest.mark.parametrize("level", ["all", "motor", "each"])
+def test_bodies_have_no_motor_to_share_a_value_by(level):
+    """Two loads may have got one value, since they were as good as equal."""
+    loads = [PlacedEffect("payload_mass", body, (0.1,), tied="lower")
+             for body in ("lower", "upper")]  # fmt: skip
+    assert not any(one.tied for one in tied(arm(), loads, level))

@@ -17,7 +17,7 @@ from diagnosis.search.few_or_many import more_is_missing
 from diagnosis.search.fitting import fit_all, ran_into_bound
 from diagnosis.search.judging import Judge
 from diagnosis.search.many.everywhere import _beside_small_mismatch, everywhere
-from diagnosis.search.many.pruning import gains_of_each
+from diagnosis.search.many.losses import Losses
 from diagnosis.search.result import SearchResult
 from diagnosis.search.search import Search
 
@@ -42,7 +42,7 @@ def fitted(predictor):
 
 
 def test_gains_are_what_removal_and_another_fit_cost(predictor, fitted):
-    gains = [gain for _, gain in gains_of_each(fitted)]
+    gains = [gain for _, gain in Losses(fitted).without_each()]
     for i in range(2):
         rest = tuple(one for k, one in enumerate(fitted.model) if k != i)
         lost = fit_all(predictor, [rest])[0].energy - fitted.energy
@@ -57,7 +57,7 @@ def test_what_shares_a_value_is_removed_together(predictor):
         for joint in ("shoulder", "elbow")
     )
     fit = fit_all(predictor, [(MODEL[0], *shared)])[0]
-    (first, _), (second, gain) = gains_of_each(fit)
+    (first, _), (second, gain) = Losses(fit).without_each()
     assert [one.place for one in first] == ["yaw"]
     assert [one.place for one in second] == ["shoulder", "elbow"]
     lost = fit_all(predictor, [MODEL[:1]])[0].energy - fit.energy

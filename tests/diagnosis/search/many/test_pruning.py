@@ -15,8 +15,8 @@ ENDLESS = PlacedEffect("speed_limit", "elbow", (20.0,))
 DRY = PlacedEffect("coulomb_friction", "yaw", (0.5,))
 
 
-def fits_of(dry_nm):
-    rubs = rubbing((dry_nm, 0.0, 0.0), (0.0, 0.0, 0.0))
+def fits_of(*dry_nm):
+    rubs = rubbing(dry_nm, (0.0, 0.0, 0.0))
     parts = []
     for seed in (0, 1):
         trace = moved(rubs, seed=seed, duration_s=5.0)
@@ -28,7 +28,7 @@ def fits_of(dry_nm):
 
 @pytest.fixture(scope="module")
 def rubs():
-    return fits_of(1.0)
+    return fits_of(1.0, 0.0, 0.0)
 
 
 @pytest.mark.parametrize("idle", [IDLE, ENDLESS])
@@ -46,5 +46,19 @@ def test_what_is_needed_stays(rubs):
 
 
 def test_nothing_may_be_left():
-    exact = fits_of(0.0)
+    exact = fits_of(0.0, 0.0, 0.0)
     assert pruned(exact, exact.fitted((IDLE,))).model == ()
+
+
+def test_joints_share_values_that_are_alike_and_no_others():
+    """Frictions that differ by 2 % are alike beside noise, those by 40 % are not."""
+    frictions = fits_of(1.0, 1.02, 0.6)
+    joints = "yaw", "shoulder", "elbow"
+    each = [PlacedEffect("coulomb_friction", one, (0.8,)) for one in joints]
+    best = pruned(frictions, frictions.fitted(tuple(each)))
+    found = {placed.place: placed for placed in best.model}
+    assert found["yaw"].tied == found["shoulder"].tied == "shoulder"
+    assert found["yaw"].values == found["shoulder"].values
+    assert found["yaw"].values[0] == pytest.approx(1.01, rel=0.02)
+    assert not found["elbow"].tied
+    assert found["elbow"].values[0] == pytest.approx(0.6, rel=0.03)

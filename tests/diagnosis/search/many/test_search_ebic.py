@@ -42,6 +42,15 @@ def test_what_is_shared_costs_one_value():
     assert CRITERION.price_within(shared, shared) == CRITERION.price(shared)
 
 
+def test_joints_that_share_a_value_are_one_choice_if_they_are_all_of_a_motor():
+    some = tuple(PlacedEffect("armature", one, (0.1,), tied="a") for one in ("a", "b"))
+    motor = frozenset({frozenset({"a", "b"}), frozenset({"c"})})
+    chosen = Ebic(samples=100.0, candidates=50, joints=7)
+    given = Ebic(samples=100.0, candidates=50, joints=7, alike=motor)
+    assert chosen.price(some) == pytest.approx(VALUE + 2 * CHOICE)
+    assert given.price(some) == pytest.approx(VALUE + CHOICE)
+
+
 def test_a_larger_model_must_lower_the_error_by_its_price():
     """A price is worth it where n samples leave exp(-2 price / n) of the energy."""
     plant = arm()
