@@ -9,11 +9,14 @@ methods for research workers", chapter 7). A cluster is here a part of a joint's
 in one direction of motion, a sample what a block of time leaves there in the mean.
 """
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from diagnosis.residuals.predictor import Predictor
 from diagnosis.search.chance import independent_blocks
-from groundwalk.arrays import FloatArray, IntArray
+from diagnosis.traces.trace import Trace
+from groundwalk.arrays import BoolArray, FloatArray, IntArray
 
 PARTS = 12
 """Number of parts of a joint's range, each of which is passed equally often."""
@@ -29,26 +32,31 @@ def design_effect(predictor: Predictor, residual: FloatArray) -> float:
     block = independent_blocks(predictor, residual).reshape(-1, width)[:, 0]
     left, scored = residual.reshape(-1, width), predictor.scored.reshape(-1, width)
     found = list[tuple[float, float]]()
-    for joint, state in zip(predictor.plant.joints, _states(predictor), strict=True):
+    for number, joint in enumerate(predictor.plant.joints):
+        angle, rises = _motion(predictor.traces, number)
         for column in channels.of_joint(joint):
-            own = scored[:, column]
-            found += _correlation(left[own, column], state[own], block[own])
+            own = scored[:, column] & np.isfinite(angle)
+            if own.any():
+                state = _state(angle[own], rises[own])
+                found += _correlation(left[own, column], state, block[own])
     if not found:
         return 1.0
     correlation, samples = np.mean(found, axis=0)
     return float(1 + (samples - 1) * max(correlation, 0.0))
 
 
-def _states(predictor: Predictor) -> IntArray:
-    """(joints, rows) part of each joint's range, and direction of its motion."""
-    traces = predictor.traces
-    angle = np.concatenate([one.position_rad[one.compared] for one in traces]).T
-    rises = np.concatenate(
-        [np.gradient(one.position_rad, axis=0)[one.compared] >= 0 for one in traces]
-    ).T
-    edges = np.quantile(angle, np.arange(1, PARTS) / PARTS, axis=1).T
-    parts = [np.digitize(*both) for both in zip(angle, edges, strict=True)]
-    return np.asarray(2 * np.array(parts) + rises)
+def _motion(traces: Sequence[Trace], number: int) -> tuple[FloatArray, BoolArray]:
+    """(rows,) measured angle of a joint, and whether it rises."""
+    every = [(one.position_rad[:, number], one.compared) for one in traces]
+    angle = np.concatenate([own[rows] for own, rows in every])
+    rises = np.concatenate([np.gradient(own)[rows] >= 0 for own, rows in every])
+    return angle, rises
+
+
+def _state(angle: FloatArray, rises: BoolArray) -> IntArray:
+    """(n,) number of the part of a joint's range, and of the direction of motion."""
+    edges = np.quantile(angle, np.arange(1, PARTS) / PARTS)
+    return np.asarray(2 * np.digitize(angle, edges) + rises)
 
 
 def _correlation(

@@ -1,5 +1,7 @@
 """Errors that come again whenever a joint does the same count as one sample."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from made_up_traces import arm, recorded
@@ -77,3 +79,14 @@ def test_fewer_samples_count_where_repeats_do_not(predictor):
         for repeats in (True, False)
     )
     assert every / once == pytest.approx(design_effect(predictor, residual))
+
+
+def test_missing_angles_are_left_out(predictor):
+    residual = residual_of(predictor, 0.5)
+    (trace,) = predictor.traces
+    gaps = trace.position_rad.copy()
+    gaps[100:150, 0] = np.nan
+    some = Predictor(arm(), [replace(trace, position_rad=gaps)])
+    left = np.where(some.scored, residual, 0.0)
+    whole = design_effect(predictor, residual)
+    assert design_effect(some, left) == pytest.approx(whole, rel=0.2)
