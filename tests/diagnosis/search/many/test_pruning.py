@@ -7,6 +7,7 @@ from diagnosis.effects.parts import PlacedEffect
 from diagnosis.residuals.torques.torque_evidence import with_motions
 from diagnosis.residuals.torques.torque_predictor import predictor_of
 from diagnosis.search.judging import Judge
+from diagnosis.search.many import pruning
 from diagnosis.search.many.fits import Fits
 from diagnosis.search.many.pruning import pruned
 
@@ -62,3 +63,18 @@ def test_joints_share_values_that_are_alike_and_no_others():
     assert found["yaw"].values[0] == pytest.approx(1.01, rel=0.02)
     assert not found["elbow"].tied
     assert found["elbow"].values[0] == pytest.approx(0.6, rel=0.03)
+
+
+@pytest.mark.parametrize("nats", [10.0, 40.0])
+def test_what_is_clearly_needed_may_differ_by_a_factor_of_two(nats, monkeypatch):
+    """Less is tried without, or more, but the same is kept."""
+    frictions = fits_of(1.0, 1.02, 0.6)
+    each = [PlacedEffect("coulomb_friction", one, (0.8,))
+            for one in ("yaw", "shoulder", "elbow")]  # fmt: skip
+    begun = frictions.fitted((*each, IDLE))
+    usual = pruned(frictions, begun)
+    monkeypatch.setattr(pruning, "CLEARLY", nats)
+    other = pruned(frictions, begun)
+    assert {(one.key, one.tied) for one in other.model} == {
+        (one.key, one.tied) for one in usual.model
+    }
