@@ -6,7 +6,7 @@ import pytest
 import torque_arm
 from scipy.interpolate import CubicSpline
 
-from diagnosis.seen import look
+from diagnosis.seen import delays, look
 from diagnosis.seen.delays import delay_of
 from diagnosis.seen.pieces import pieces_of
 
@@ -73,3 +73,21 @@ def test_it_is_said_if_there_is_no_delay():
     joint = look(torque_arm.arm(), [trace]).joints[0]
     assert joint.delay is None
     assert any("does not follow" in text for text in joint.unknown)
+
+
+SHARES = "ALIKE", "MOST"
+CONSTANTS = ("LONGEST_S", "SHORTEST_S", "FEWEST_ROWS", "EDGE", "ALIKE", "MOST", "MOVED")
+
+
+@pytest.mark.parametrize("name", CONSTANTS)
+@pytest.mark.parametrize("factor", [0.5, 2])
+def test_a_factor_of_two_in_a_constant_does_not_matter(monkeypatch, name, factor):
+    """What follows is known as well, and what follows nothing has no delay."""
+    value = type(getattr(delays, name))(getattr(delays, name) * factor)
+    # a correlation, or a share, is 1 at most
+    monkeypatch.setattr(delays, name, min(value, 0.9) if name in SHARES else value)
+    trace = late(0.0302, 1e-3, duration_s=20.0)
+    assert delay([trace]).middle_s == pytest.approx(0.0302, abs=0.1 * TICK_S)
+    other = late(0.02, seed=9, duration_s=20.0).command_rad
+    found = delay([replace(trace, command_rad=other)])
+    assert found is None or found.high_s - found.low_s > 2 * TICK_S

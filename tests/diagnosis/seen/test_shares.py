@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 import torque_arm
 
-from diagnosis.seen import look
+from diagnosis.seen import look, rows, shares
 
 
 def best_of(loss, joint=2):
@@ -88,3 +88,30 @@ def test_too_little_motion_tells_nothing():
     found = look(torque_arm.arm(), [known_losses.moved(duration_s=1.2)])
     assert all(one.shares == () and one.together is None for one in found.joints)
     assert any("too little" in text for text in found.joints[0].unknown)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("factor", [0.5, 2])
+@pytest.mark.parametrize(
+    ("module", "name"),
+    [
+        (shares, "RIDGE"),
+        (shares, "FEWEST_ROWS"),
+        (shares, "CLOSE"),
+        (shares, "FEWEST_PAIRS"),
+        (shares, "MOST_ROWS"),
+        (rows, "CHOSEN_S"),
+        (rows, "STILL"),
+        (rows, "LEAST_TURN"),
+        (rows, "NOISE_TURN"),
+    ],
+)
+def test_a_factor_of_two_in_a_constant_hardly_matters(
+    monkeypatch, module, name, factor
+):
+    value = getattr(module, name)
+    monkeypatch.setattr(module, name, type(value)(factor * value))
+    best, every, found = best_of(lambda q, v, needed: 1.5 * np.sign(v))
+    assert best.name == "sign of speed"
+    assert found.together > 0.95
+    assert every["position"].lost < 0.02
