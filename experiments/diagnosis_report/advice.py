@@ -8,7 +8,7 @@ from diagnosis.corrected.mjcf import CORRECTED_XML
 from diagnosis.effects import effect as kind_of
 from diagnosis.verdict import Found
 from experiments.diagnosis_report.corrected_files import how_simulated, why_in_no_file
-from experiments.diagnosis_report.findings import told_together
+from experiments.diagnosis_report.findings import at_number, told_together
 from experiments.diagnosis_report.place_words import at_words
 
 
@@ -32,11 +32,9 @@ def advised(verdict: Verdict) -> Iterator[Advice]:
     if verdict.kind != "effects":
         return
     for group in told_together(verdict.effects):
-        words = kind_of(group[0].name).words
-        about = at_words(group[0])
-        if len(group) > 1:
-            about = f"{words.label} at {len(group)} places"
-        yield Advice(about, words.advice, _in_sim(group))
+        about = at_number(group) if len(group) > 1 else at_words(group[0])
+        advice = kind_of(group[0].name).words.advice
+        yield Advice(about, advice, _in_sim(group))
 
 
 def _in_sim(group: Sequence[Found]) -> str:

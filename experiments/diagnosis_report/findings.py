@@ -65,12 +65,17 @@ def at_many(alike: Sequence[Found]) -> str:
         alone = estimate_text(replace(one, low=one.value, high=one.value))
         return f"about {alone} at {place_words(effect.place)}"
 
-    label = f"{kind_of(alike[0].name).words.label} at {len(alike)} places"
+    label = at_number(alike)
     if len(alike[0].shared_with) == len(alike) - 1:
         same = estimate_text(alike[0].parameters[name])
         return f"{label}, {name.replace('_', ' ')} about {same} at all of them"
     span = f"{name.replace('_', ' ')} from {value(order[0])} to {value(order[-1])}"
     return f"{label}, {span}"
+
+
+def at_number(alike: Sequence[Found]) -> str:
+    """The name of an effect, and the number of places that have it."""
+    return f"{kind_of(alike[0].name).words.label} at {len(alike)} places"
 
 
 def finding(effect: Found, changed: bool = False) -> str:

@@ -3,8 +3,14 @@
 from typing import NamedTuple
 
 from diagnosis import Verdict
-from diagnosis.verdict import Fit
-from experiments.diagnosis_report.findings import findings, pulse_sentences
+from diagnosis.verdict import Fit, Found
+from experiments.diagnosis_report.findings import (
+    MANY,
+    at_number,
+    findings,
+    pulse_sentences,
+    told_together,
+)
 from experiments.diagnosis_report.numbers import (
     error_unit,
     errors_text,
@@ -176,19 +182,33 @@ def _open(verdict: Verdict, what: str) -> list[str]:
 
 
 def doubts(verdict: Verdict) -> list[str]:
-    """Sentences on how sure each effect is, and on other answers that fit as well."""
+    """Sentences on how sure each effect is, and on other answers that fit as well.
+
+    What holds for an effect at many places is said once.
+    """
     lines = []
-    for effect in verdict.effects:
-        rest = "no other effect known here explains the recordings as well"
-        others = [at_words(other) for other in effect.confusable_with]
-        if others:
-            rest = f"the recordings do not rule out {listing(others, 'or')} instead"
-        sure = sure_text(effect.probability)
-        lines.append(sentence(f"{at_words(effect)}: {sure}; {rest}"))
+    for group in told_together(verdict.effects):
+        alike = dict[str, list[Found]]()
+        for effect in group:
+            alike.setdefault(_how_sure(effect), []).append(effect)
+        for said, own in alike.items():
+            about = [at_words(one) for one in own]
+            if len(own) >= MANY:
+                about = [at_number(own)]
+            lines += [sentence(f"{one}: {said}") for one in about]
     answers = [answer_words(one) for one in verdict.alternatives]
     if answers and verdict.kind != "not_identifiable":
         lines.append(f"Other answers that fit about as well: {listing(answers, 'or')}.")
     return lines
+
+
+def _how_sure(effect: Found) -> str:
+    """How sure an effect is, and what else it may be."""
+    rest = "no other effect known here explains the recordings as well"
+    others = [at_words(other) for other in effect.confusable_with]
+    if others:
+        rest = f"the recordings do not rule out {listing(others, 'or')} instead"
+    return f"{sure_text(effect.probability)}; {rest}"
 
 
 def next_step(verdict: Verdict) -> str:

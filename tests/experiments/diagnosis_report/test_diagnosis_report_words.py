@@ -2,6 +2,7 @@ import re
 from dataclasses import replace
 from string import Formatter
 
+import made_up_diagnoses as made_up
 import numpy as np
 import pytest
 
@@ -28,7 +29,7 @@ from experiments.diagnosis_report.place_words import (
     channel_words,
     place_words,
 )
-from experiments.diagnosis_report.text import answer
+from experiments.diagnosis_report.text import answer, doubts
 from groundwalk.errors import UnknownNameError
 
 STRIBECK = ("coulomb_torque", "extra_torque", "speed", "exponent")
@@ -296,3 +297,16 @@ def test_small_values_are_said_last_and_are_no_evidence():
     assert "no evidence" in last
     assert "dry friction" not in last
     assert not any("no evidence" in text for text in answer(Verdict("none")))
+
+
+def test_what_holds_at_many_places_is_said_once():
+    (known,) = made_up.ONE.effects
+    alike = [replace(known, place=place) for place in "ABCD"]
+    sure = replace(known, place="E", confusable_with=())
+    verdict = replace(made_up.ONE, effects=(*alike, sure), alternatives=())
+    many, other = doubts(verdict)
+    assert many.startswith("Play (backlash) at 4 places: ")
+    assert "do not rule out dry friction" in many
+    assert "no other effect" in other
+    few = replace(verdict, effects=(*alike[:2],))
+    assert len(doubts(few)) == 2
