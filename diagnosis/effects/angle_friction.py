@@ -34,7 +34,7 @@ class AngleFriction(JointEffect):
     words = EffectWords(
         "dry friction that varies with the angle",
         "{joint} has dry friction of {torque} in the middle of its range, {factor} "
-        "times as much a radian further, {lacking}",
+        "times as much a radian (a metre, if it slides) further, {lacking}",
         "A linkage, a cable or a bent shaft rubs harder at one end of the motion than "
         "at the other.",
         "Turn the joint by hand over its range: look at cables, seals and linkages "
