@@ -1,11 +1,9 @@
 """Tails and quantiles of the distributions that statistical tests use.
 
 Those of `scipy.stats` by the same functions of `scipy.special`. Importing `scipy.stats`
-takes half a second, a tenth of what checking a recording may take. Of arrays, the
-functions work on each entry; without freedom (0 degrees) what they return is NaN.
+takes half a second, a tenth of what checking a recording may take. Without freedom
+(0 degrees) what they return is NaN.
 """
-
-from typing import Any
 
 import numpy as np
 from scipy import special
@@ -18,9 +16,12 @@ def chi2_sf(value: float, freedom: float) -> float:
     return float(special.chdtrc(_some(freedom), value))
 
 
-def chi2_isf(probability: float, freedom: FloatArray | float) -> Any:
-    """The value that a chi-square variable exceeds with a probability."""
-    return special.chdtri(_some(freedom), probability)
+def chi2_isf(probability: float, freedom: FloatArray | float) -> FloatArray:
+    """The values that chi-square variables exceed with a probability.
+
+    One for each number of degrees of freedom.
+    """
+    return np.asarray(special.chdtri(_some(freedom), probability))
 
 
 def chi2_ppf(probability: float, freedom: float) -> float:

@@ -12,7 +12,7 @@ from diagnosis.traces.trace import Trace
 from diagnosis.verdict import Estimate, Found, Recordings, Verdict
 from groundwalk.distributions import normal_ppf
 
-NORMAL_80 = float(normal_ppf(0.9))
+NORMAL_80 = normal_ppf(0.9)
 """Half width of an 80 % interval of a normal distribution, in standard deviations."""
 
 _LARGEST = 1e12

@@ -57,7 +57,7 @@ damping."""
 LEAST_CHANGE = 0.1
 """Smallest change of a parameter, in typical sizes, that counts as a missing effect."""
 
-_NORMAL_95 = float(normal_ppf(0.975))
+_NORMAL_95 = normal_ppf(0.975)
 _WORST = 1e3
 """Largest residual, in standard deviations of the noise; it replaces larger ones, and
 those of simulations that diverge."""

@@ -110,7 +110,7 @@ def _wider(units: int) -> float:
     if units < 2:
         return 1.0
     tail = (1 + LEVEL) / 2
-    student = float(t_ppf(tail, units - 1) / normal_ppf(tail))
+    student = t_ppf(tail, units - 1) / normal_ppf(tail)
     return student * float(np.sqrt(units / (units - 1)))
 
 

@@ -92,7 +92,7 @@ def _same_size(
     rough = 1 / (1 / weights + between)
     means = [rough[own] @ sizes[own] / rough[own].sum() for own in sides]
     error = np.sqrt(sum(1 / rough[own].sum() for own in sides))
-    return bool(2 * t_sf(abs(means[1] - means[0]) / error, free) > level)
+    return 2 * t_sf(abs(means[1] - means[0]) / error, free) > level
 
 
 def _gains_no_more(told: Told, level: float) -> bool:
@@ -107,7 +107,7 @@ def _gains_no_more(told: Told, level: float) -> bool:
     if count < FEWEST or chi2_sf(2 * single, told.values * free) > LEVEL:
         return False
     ratio = told.shared * before / count * free / max(single, 1e-12)
-    return bool(f_sf(ratio, told.values, free) > level)
+    return f_sf(ratio, told.values, free) > level
 
 
 def no_change(

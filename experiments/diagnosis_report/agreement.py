@@ -52,7 +52,7 @@ def agree(estimate: Estimate) -> bool | None:
         towards = one.high - one.value if far > 0 else one.value - one.low
         width = towards or one.high - one.low
         total += (far * Z_80 / width) ** 2
-    return bool(chi2_sf(total, len(known) - 1) > LEVEL)
+    return chi2_sf(total, len(known) - 1) > LEVEL
 
 
 def _alone(estimate: Estimate) -> str:
