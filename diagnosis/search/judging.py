@@ -98,8 +98,8 @@ class Judge:
         judged `again`.
         """
         self.fit.calibrate(model)
-        self.select.correct(model)
         self.select.doubt_beside(self.fit.nuisance, model)
+        self.select.correct(model)
         self._see_nominal()
 
     def again(self, judged: Sequence[Judged]) -> list[Judged]:
