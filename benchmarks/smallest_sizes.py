@@ -4,7 +4,8 @@ Small robots are recorded in the hidden world, exact and with nothing hidden. `c
 says from these recordings which size of each effect it would tell. Then one effect is
 hidden, with twice or half that size, beside the small mismatch that every robot has,
 and the same commands are recorded and diagnosed. An effect is found if the verdict
-names it at its place, and no other effect as possible instead.
+names it at its place, and nothing as possible instead but twins, which `check` says
+cannot be told apart.
 
     python -m benchmarks.smallest_sizes --cases 40 --seed 1 --out sizes.jsonl
 
@@ -32,8 +33,10 @@ from experiments.command_line import run_script
 from experiments.concealed.motion import CaseMotion
 from experiments.concealed.second.nuisance import EXACT, Nuisance
 from experiments.motions import MOTIONS
+from groundwalk.arrays import FloatArray
 from groundwalk.files import write_text
 from worlds.hidden import KINDS, Hidden
+from worlds.hidden.engine import BodySense
 from worlds.hidden.limbs import limb_plant
 from worlds.hidden.recorded import HiddenSensors, hidden_recording
 from worlds.hidden.run import Run, run_hidden
@@ -42,6 +45,9 @@ from worlds.recordings.metadata import RecordingMetadata
 
 ROBOTS = ("two_dof", "double_pendulum", "a1_leg")
 RATE_HZ, DURATION_S, BEFORE_S = 100.0, 4.0, 0.5
+ON_S = 60.0
+"""Time before a recording [s] for which a robot has been on whose servos integrate:
+what `check` and the diagnosis take of all robots, and what only these remember."""
 STEP_S = 0.0005
 """Physics step of the hidden world [s]."""
 SHARES = (2.0, 0.5)
@@ -91,8 +97,16 @@ class Case:
         robot = self.motion.plant.with_masses(mismatch.extra_kg)
         start_rad, feed = self.motion.feed(number)
         every, nobody = (*mismatch.effects, *effects), np.random.SeedSequence(0)
-        clock = self.motion.clock(number, STEP_S)
-        return run_hidden(robot, every, "mujoco", clock, feed, start_rad, nobody)
+        remembers = any(one.name == "integral_term" for one in effects)
+        held_s = ON_S if remembers else 0.0
+        ticks = round(held_s * RATE_HZ)
+        spans_s = tuple((held_s + before, own) for before, own in self.motion.spans_s)
+        clock = replace(self.motion, spans_s=spans_s).clock(number, STEP_S)
+
+        def held(row: int, sense: BodySense) -> FloatArray:
+            return feed(max(row - ticks, 0), sense)
+
+        return run_hidden(robot, every, "mujoco", clock, held, start_rad, nobody)
 
     def traces(self, runs: Sequence[Run], effects: Sequence[Hidden]) -> list[Trace]:
         """What noisy sensors make of the runs."""
@@ -126,12 +140,18 @@ def hidden_of(plant: Plant, size: Size, share: float) -> Hidden | None:
     )
 
 
-def is_found(verdict: Verdict, hidden: Hidden) -> tuple[bool, bool]:
-    """Whether an effect is named at its place, and whether nothing else may be it."""
+def is_found(plant: Plant, verdict: Verdict, hidden: Hidden) -> tuple[bool, bool]:
+    """Whether an effect is named at its place, and whether nothing else may be it.
+
+    Nothing but its twins, which no recording of the robot tells apart from it.
+    """
+    twins = effect(hidden.name).twins(plant, hidden.place)
+    known = {f"{one.name}@{one.place}" for one in twins}
     key = f"{hidden.name}@{hidden.place}"
     for one in verdict.effects if verdict.kind == "effects" else ():
         if f"{one.name}@{one.place}" == key:
-            return True, not one.confusable_with
+            others = {f"{each.name}@{each.place}" for each in one.confusable_with}
+            return True, not others - known
     return False, False
 
 
@@ -165,7 +185,7 @@ def cases_of(seed: int, number: int, folder: Path) -> dict[str, Any] | None:
         return None
     traces = case.traces(runs, [hidden])
     verdict = diagnose(case.plant, traces, np.random.SeedSequence(1)).verdict
-    named, told = is_found(verdict, hidden)
+    named, told = is_found(case.plant, verdict, hidden)
     return {
         "case": number,
         "robot": case.motion.plant.name,

@@ -31,6 +31,9 @@ SIMULATED_S = 8.0
 """Most seconds of the recordings that are simulated with effects, the liveliest part of
 each; what they show grows with the time."""
 
+TWINS = "no recording of this robot tells more than that one of the two is there"
+"""Why an effect and its twin are not told apart, see `Effect.twins`."""
+
 FAR_APART = 2.0
 """Two effects count as alike if one is told only at this multiple of the size at which
 it is seen, or never."""
@@ -153,10 +156,16 @@ def _alike(
 ) -> tuple[Alike, ...]:
     """Pairs of effects that are seen, but not told apart; each pair once.
 
-    Places that nothing moves are left out: their joints are known to be at rest.
+    Twins are told as one. Places that nothing moves are left out: their joints are
+    known to be at rest.
     """
     found: dict[frozenset[str], Alike] = {}
     for key, one in sizes.items():
+        placed = one.placed
+        for twin in effect(placed.name).twins(plant, placed.place):
+            if one.told is not None:
+                pair = frozenset((key, twin.key))
+                found.setdefault(pair, Alike(key, twin.key, TWINS))
         if one.nearest is None or one.seen is None or not _is_lost(one):
             continue
         if {one.placed.place, one.nearest.place} & (set(plant.joints) - moving):

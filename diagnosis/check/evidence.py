@@ -5,7 +5,7 @@ would leave is drawn, as noise and rounding were measured. So what is missing in
 recordings does not change the sizes that they would tell.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -17,13 +17,21 @@ from diagnosis.effects.parts import PlacedEffect
 from diagnosis.plant.plant import Plant
 from diagnosis.residuals.changes import Changes
 from diagnosis.residuals.predictor import Predictor
-from diagnosis.residuals.signatures import Signature, signatures_of, tips
+from diagnosis.residuals.signatures import (
+    Signature,
+    signatures_apart,
+    signatures_of,
+    tips,
+)
 from diagnosis.residuals.small_mismatch.usual_errors import usual_errors
 from diagnosis.residuals.tolerance import Tolerance
 from diagnosis.search.judging import gain_of_noise
 from diagnosis.search.screening import Screen
 from diagnosis.traces.usage import Usage
 from groundwalk.arrays import FloatArray
+
+Simulated = Callable[[Predictor, Sequence[PlacedEffect]], list[Signature]]
+"""How effects are simulated: kinds at all joints together, or each by itself."""
 
 SEED = 20_260_202
 """Seed of the drawn noise: the same recordings always give the same sizes."""
@@ -32,9 +40,8 @@ LEAST_S = 1.0
 """Time [s] that is simulated at least of each recording: more than twice that in which
 a wrong start state counts."""
 
-NEAR = 1.2
-"""An effect is simulated again if the size that would be told is by this factor larger
-or smaller than that which was tried; nearer by, changes are proportional enough."""
+APART = 2.0
+"""Least factor between two sizes of which it is taken how a change grows with them."""
 
 POWERS = (0.5, 3.0)
 """Smallest and largest power of its size with which what an effect changes may grow; of
@@ -108,18 +115,16 @@ class Evidence:
     def sizes(self, rows: int) -> "Sizes":
         """How large effects must be to be told in recordings of so many rows.
 
-        Where the size is not that which was tried, it is simulated, so that it is right
-        for what is not linear, such as play.
+        That size is simulated then, so that it is right for what is not linear, such as
+        play, and each effect by itself.
         """
         whitened = self.signatures()
         demand = self.demand(whitened, rows)
         plant = self.predictor.plant
         first = smallest_sizes(plant, whitened, demand)
-        again = [one.placed for one in first.values() if _is_far(one)]
-        if not again:
-            return Sizes(first, demand, {}, self)
+        again = [one.placed for one in first.values() if _is_scaled(one)]
         keys = {placed.key for placed in again}
-        more = _of_whole(self.predictor, again)
+        more = _of_whole(self.predictor, again, signatures_apart)
         kept = [one for one in self.found if one.placed.key not in keys]
         found = (*kept, *more)
         unknown = _unknown(self.predictor, found)
@@ -156,22 +161,26 @@ class Sizes:
         return smallest_sizes(plant, both.signatures(), self.demand, self.powers)
 
 
-def _is_far(one: Smallest) -> bool:
-    """Whether an effect is to be simulated again, in the size that would be told."""
+def _is_scaled(one: Smallest) -> bool:
+    """Whether an effect's size is one number, which may be any."""
     kind = effect(one.placed.name)
-    scalar = kind.components == 1 and not kind.threshold
-    return scalar and one.told is not None and not 1 / NEAR < one.factor < NEAR
+    return kind.components == 1 and not kind.threshold
 
 
 def _power(first: Smallest, again: Signature) -> float:
-    """With which power of the size a change grows, by two sizes of it."""
+    """With which power of the size a change grows, by two sizes of it; 1 if unknown."""
+    if 1 / APART < first.factor < APART or first.told is None:
+        return 1.0
     gain = 0.5 * float(again.change @ again.change)
     grown = 0.5 * np.log(max(gain, TINY) / first.gain) / np.log(first.factor)
     return float(np.clip(grown, *POWERS))
 
 
 def evidence_of(
-    predictor: Predictor, tries: Sequence[PlacedEffect], weight: float
+    predictor: Predictor,
+    tries: Sequence[PlacedEffect],
+    weight: float,
+    simulated: Simulated = signatures_of,
 ) -> Evidence:
     """What the recordings of a predictor would show of effects in tried sizes.
 
@@ -179,17 +188,19 @@ def evidence_of(
     wrong start states change.
     """
     predictor.doubt(tolerances=False)
-    found = _of_whole(predictor, tries)
+    found = _of_whole(predictor, tries, simulated)
     drawn = predictor.drawn(np.random.default_rng(SEED))
     noise = predictor.residual_of(drawn)
     return Evidence(tuple(found), _unknown(predictor, found), noise, weight, predictor)
 
 
-def _of_whole(predictor: Predictor, tries: Sequence[PlacedEffect]) -> list[Signature]:
+def _of_whole(
+    predictor: Predictor, tries: Sequence[PlacedEffect], simulated: Simulated
+) -> list[Signature]:
     """Signatures of effects, in their order, with changes of all of a residual."""
     order = {id(placed): i for i, placed in enumerate(tries)}
     found = []
-    for one in signatures_of(predictor, tries):
+    for one in simulated(predictor, tries):
         change = np.zeros(len(predictor.scored))
         change[one.rows] = one.change
         found.append(_whole(one, change))

@@ -11,10 +11,11 @@ from diagnosis.motions.plan import RATE_HZ, Limits, PlannedMotion, planned
 from diagnosis.plant.plant import Plant
 from diagnosis.residuals.channels import Channels
 from diagnosis.residuals.predictor import Predictor
+from diagnosis.residuals.signatures import signatures_apart
 from diagnosis.traces.split import shortened
 from diagnosis.traces.trace import Trace
 
-SIMULATED_S = 9.0
+SIMULATED_S = 6.0
 """Most seconds of all proposed motions that are simulated with effects; what they show
 grows with the time."""
 
@@ -47,7 +48,7 @@ def next_motions(
     lasted_s = [sum(one.duration_s for one in every) for every in (whole, some)]
     weight = FITTED * lasted_s[0] / lasted_s[1]
     tries = [one.placed for one in now.evidence.found]
-    evidence = evidence_of(predictor, tries, weight)
+    evidence = evidence_of(predictor, tries, weight, signatures_apart)
     found = []
     for number, motion in enumerate(motions):
         sizes = now.with_more(evidence.part(number))

@@ -1,4 +1,4 @@
-"""The size of an effect: how it is scaled, and up to which it is usual."""
+"""The size of an effect: how it is scaled, and from which on it can be told."""
 
 from dataclasses import replace
 
@@ -69,12 +69,29 @@ def unit_of(plant: Plant, placed: PlacedEffect) -> str:
     return plant.unit(first.unit, placed.place)
 
 
-def usual_size(plant: Plant, placed: PlacedEffect) -> float | None:
-    """The largest size that counts as a usual error of a model; None if none does."""
+def least_named(plant: Plant, placed: PlacedEffect) -> float:
+    """Multiple of the effect's size up to which it is a usual error of a model.
+
+    0 if no size is.
+    """
     kind = effect(placed.name)
     first = kind.parameters(plant, placed.place)[0]
-    spread = kind.spread(plant, placed.place)
-    if not spread or kind.jumps:  # dry friction is missing, however little
-        return None
+    spread, size = kind.spread(plant, placed.place), size_of(plant, placed, 1.0)
+    if not (spread and size) or kind.jumps:  # dry friction is missing, however little
+        return 0.0
     way = np.sign(far_of(first, placed.values[0])) or 1.0
-    return abs(value_at(first, float(way) * USUAL * spread) - first.neutral)
+    most = abs(value_at(first, float(way) * USUAL * spread) - first.neutral)
+    return most / size
+
+
+def least_known(plant: Plant, placed: PlacedEffect) -> float:
+    """Multiple of the effect's size below which it lies within what models leave out.
+
+    0 if no size does, see `Effect.faintest`.
+    """
+    kind = effect(placed.name)
+    least, size = kind.faintest(plant, placed.place), size_of(plant, placed, 1.0)
+    if least is None or not size:
+        return 0.0
+    finite = np.isfinite(kind.parameters(plant, placed.place)[0].neutral)
+    return least / size if finite else size / least

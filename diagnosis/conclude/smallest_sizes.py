@@ -32,10 +32,11 @@ import numpy as np
 from diagnosis.conclude.answer import TIED_NATS
 from diagnosis.conclude.effect_sizes import (
     SAME,
+    least_known,
+    least_named,
     scaled,
     size_of,
     unit_of,
-    usual_size,
 )
 from diagnosis.conclude.nuisance_found import LITTLE
 from diagnosis.effects.library import effect, grown_from
@@ -212,16 +213,15 @@ def _smallest(
         wanted = lead / (own * max(1 - cosine, SAME) * demand.more)
         if wanted > most:
             most, nearest, alike = wanted, other.placed, float(cosine)
-    factors = [float(one ** (0.5 / k)) for one in (seen, max(seen, most))]
-    largest = scaled(plant, placed, factors[1])
-    sizes = [size_of(plant, placed, factor) for factor in factors]
-    usual = usual_size(plant, largest)
-    is_usual = usual is not None and sizes[1] is not None and sizes[1] < usual
-    unit = unit_of(plant, placed)
-    told, shown = (
-        None if size is None else Amount(max(size, usual or 0.0), unit)
-        for size in reversed(sizes)
+    named = [float(one ** (0.5 / k)) for one in (seen, max(seen, most))]
+    usual = least_named(plant, placed)
+    factors = [max(one, usual, least_known(plant, placed)) for one in named]
+    largest, unit = scaled(plant, placed, factors[1]), unit_of(plant, placed)
+    shown, told = (
+        None if (size := size_of(plant, placed, factor)) is None else Amount(size, unit)
+        for factor in factors
     )
+    is_usual = told is not None and named[1] < usual
     return Smallest(largest, factors[1], own, shown, told, nearest, alike, is_usual)
 
 

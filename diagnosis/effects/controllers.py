@@ -17,6 +17,11 @@ from diagnosis.traces.trace import Trace
 from diagnosis.traces.usage import Usage
 from groundwalk.arrays import FloatArray
 
+SETTLED_S = 20.0
+"""Integral time [s] at which an integral has gathered 95 % of what it will hold within
+the minute for which robots have been on (`replay.controllers.ON_S`). Where it begins
+with a longer time, nobody knows."""
+
 BAND_SHARES = (0.1, 0.4)
 """Dead bands that are tried first, as shares of the error at which the servo gives the
 largest torque of the recordings. A band is not linear in its size; from 0.04 to 1 of
@@ -55,6 +60,10 @@ class IntegralTerm(CommandedServo):
     def parameters(self, plant: Plant, place: str) -> tuple[Parameter, ...]:
         """The integral time [s], the same for all robots and places."""
         return (Parameter("time", "s", 0.05, 1000.0, np.inf, 1.0, logarithmic=True),)
+
+    def faintest(self, plant: Plant, place: str) -> float | None:
+        """The longest integral time [s] of which it is known where it begins."""
+        return SETTLED_S
 
     def places(self, plant: Plant, traces: Sequence[Trace]) -> tuple[str, ...]:
         """Names of joints whose servo follows commands, on a fixed base only."""

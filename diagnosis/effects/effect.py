@@ -184,6 +184,13 @@ class Effect(ABC):
         """Standard deviation, as `tolerance`, on robots with a model of usual care."""
         return self.tolerance(plant, place)
 
+    def faintest(self, plant: Plant, place: str) -> float | None:
+        """First value of the least size that can be told; None if any size can.
+
+        Less of it lies within what every model of a robot leaves out.
+        """
+        return None
+
     def obstacle(self, recorded: Base, base: Base) -> str:
         """Why a sim with a `base` cannot have the effect; "" if it can."""
         return ""

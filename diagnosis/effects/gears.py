@@ -65,6 +65,10 @@ class Backlash(ServoEffect):
         joints.gap_rad[at] += values[0]
         joints.compliance_rad_nm[at] += values[1:].sum()
 
+    def faintest(self, plant: Plant, place: str) -> float | None:
+        """The gap [rad] by which gears without play may yield as well."""
+        return YIELD_RAD
+
     def softer(self, plant: Plant, placed: PlacedEffect) -> PlacedEffect:
         """With a gear that yields beyond its gap; the compliance is in rad/(N m)."""
         compliance = YIELD_RAD / torque_nm(plant, placed.place)
@@ -119,7 +123,7 @@ class JointElasticity(JointEffect):
         3 % of critical damping; at the bounds it twists by 1 rad and by 0.5 mrad.
         """
         scale = torque_nm(plant, place)
-        typical, high = scale / 0.05, scale / 0.0005
+        typical, high = scale / 0.05, scale / YIELD_RAD
         critical = 2 * float(np.sqrt(typical * inertia_kg_m2(plant, place)))
         return (
             Parameter("stiffness", "N m/rad", scale, high, np.inf, typical, True),

@@ -59,6 +59,21 @@ def signatures(
     return _simulated(predictor, base, trials)
 
 
+def signatures_apart(
+    predictor: Predictor, every: Sequence[PlacedEffect]
+) -> list[Signature]:
+    """Simulate given effects one by one, with what each changes at other joints.
+
+    That is little, but most of what is left where usual errors of a model can make
+    nearly all that an effect changes at its own joint. Limits and stops, with which no
+    others are compared, are simulated as in `signatures_of`. The order is another one.
+    """
+    limits = [one for one in every if effect(one.name).threshold]
+    others = [one for one in every if not effect(one.name).threshold]
+    trials = [*_together(limits), *(((one,), False) for one in others)]
+    return _simulated(predictor, (), trials)
+
+
 def signatures_of(
     predictor: Predictor, every: Sequence[PlacedEffect]
 ) -> list[Signature]:
@@ -67,6 +82,11 @@ def signatures_of(
     That holds for limits and stops, too, which must be so mild that no joint collapses.
     The signatures are in another order.
     """
+    return _simulated(predictor, (), _together(every))
+
+
+def _together(every: Sequence[PlacedEffect]) -> list[tuple[Model, bool]]:
+    """Effects in models, those of one kind at all joints in the same one."""
     groups: dict[tuple[str, int], list[PlacedEffect]] = {}
     seen: dict[str, int] = {}
     for placed in every:
@@ -79,7 +99,7 @@ def signatures_of(
             trials.append((tuple(own), True))
         else:
             trials += [((placed,), False) for placed in own]
-    return _simulated(predictor, (), trials)
+    return trials
 
 
 def _simulated(

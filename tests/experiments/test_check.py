@@ -60,8 +60,8 @@ KEYS = (
 @pytest.mark.parametrize(
     ("module", "name", "value"),
     [
-        (evidence, "NEAR", 1.1),
-        (evidence, "NEAR", 1.4),
+        (evidence, "APART", 1.5),
+        (evidence, "APART", 3.0),
         (evidence, "LEAST_S", 0.5),
         (evidence, "LEAST_S", 2.0),
         (evidence, "MILDEST", 1),
@@ -152,6 +152,14 @@ def test_everything_is_printed_and_written(recordings, tmp_path, capsys, monkeyp
     assert np.abs(commands[:, 1]).max() <= 3.0
     with pytest.raises(RunFolderError, match="exists already"):
         main(checked(recordings, "multisine", out=tmp_path / "run"))
+
+
+def test_twins_are_told_as_one(found):
+    """A late command and a late reading move a robot alike, as its servo is inside."""
+    late = {"command_latency@commands", "sensor_delay@encoders"}
+    (pair,) = (one for one in found.alike if {one.one, one.other} == late)
+    assert "no recording" in pair.why
+    assert found.size("command_latency@commands").told is not None
 
 
 def test_without_out_nothing_is_written(recordings, tmp_path, capsys, monkeypatch):

@@ -141,6 +141,25 @@ def test_usual_errors_are_not_told():
     assert not sizes(signature(gain, 4.0))["servo_gain@elbow"].usual
 
 
+@pytest.mark.parametrize(
+    ("placed", "least"),
+    [
+        (PlacedEffect("backlash", "elbow", (0.01,)), 0.0005),  # gears yield as much
+        (PlacedEffect("integral_term", "elbow", (1.0,)), 20.0),  # a third of a minute
+    ],
+)
+def test_what_every_model_leaves_out_is_not_told(placed, least):
+    """However well it shows; a larger size is told as it shows."""
+    one = sizes(signature(placed, 1e4))[placed.key]
+    assert one.told == one.seen
+    assert one.told.value == pytest.approx(least)
+    assert one.placed.values == pytest.approx((least,))
+    assert not one.usual
+    # 40 noise gain 800 nats: 10 times less is seen
+    one = sizes(signature(placed, 40.0))[placed.key]
+    assert one.told.value == pytest.approx(0.001 if least < 1 else 10.0)
+
+
 @pytest.mark.parametrize("known", [0.5, 10.0, 300.0])
 def test_dry_friction_stands_out_from_other_errors_only(known):
     """Dry friction of one standard deviation leaves r = `known` beside all others.

@@ -3,10 +3,15 @@ import pytest
 from known_arms import CHANNELS
 from made_up_traces import arm, recorded
 
+from diagnosis.effects.parts import PlacedEffect
 from diagnosis.residuals import signatures as tries
 from diagnosis.residuals.predictor import Predictor
 from diagnosis.residuals.reference_noise import ReferenceNoise
-from diagnosis.residuals.signatures import signatures
+from diagnosis.residuals.signatures import (
+    signatures,
+    signatures_apart,
+    signatures_of,
+)
 from diagnosis.traces.usage import Usage
 
 
@@ -37,14 +42,32 @@ def test_all_is_tried_joint_by_joint_beside_errors_of_all_joints(reference):
     assert (wrong(predictor, "viscous_friction") < 1e-6) == reference
 
 
+def test_what_a_joint_changes_at_others_is_simulated_apart():
+    predictor = Predictor(arm(), [recorded(arm(), duration_s=2.0)], CHANNELS)
+    predictor.calibrate()
+    some = [PlacedEffect("armature", joint, (0.05,)) for joint in arm().joints]
+    limits = [PlacedEffect("torque_limit", joint, (20.0,)) for joint in arm().joints]
+    assert wrong_of(predictor, signatures_of(predictor, some)) > 1
+    own = signatures_apart(predictor, [*some, *limits])
+    assert {one.placed for one in own} == {*some, *limits}
+    apart = [one for one in own if one.placed in some]
+    assert wrong_of(predictor, apart) < 1e-6
+    assert all(len(one.rows) == len(predictor.scored) for one in apart)
+    assert not any(len(one.rows) == len(predictor.scored) for one in own[:2])
+
+
 def found_in(predictor, name):
     usage = Usage.of(predictor.plant, predictor.traces)
     return signatures(predictor, (), usage, names=[name])
 
 
 def wrong(predictor, name):
-    """The largest error of a signature, in units of noise."""
-    found = found_in(predictor, name)
+    """The largest error of an effect's signatures, in units of noise."""
+    return wrong_of(predictor, found_in(predictor, name))
+
+
+def wrong_of(predictor, found):
+    """The largest error of signatures, in units of noise."""
     nominal, *alone = predictor.residuals([(), *((one.placed,) for one in found)])
     return max(
         float(np.abs(padded(one, len(own)) - (own - nominal)).max())
