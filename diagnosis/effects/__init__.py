@@ -10,6 +10,7 @@ from diagnosis.effects.effect import Effect as Effect
 from diagnosis.effects.library import all_effects as all_effects
 from diagnosis.effects.library import also_known as also_known
 from diagnosis.effects.library import effect as effect
+from diagnosis.effects.library import keys_within as keys_within
 from diagnosis.effects.parts import EffectWords as EffectWords
 from diagnosis.effects.parts import JointMotion as JointMotion
 from diagnosis.effects.parts import Parameter as Parameter

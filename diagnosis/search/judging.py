@@ -115,7 +115,21 @@ class Judge:
 
     def ranked(self, judged: Sequence[Judged]) -> list[Judged]:
         """Models in the order of their plausibility, the most plausible first."""
-        return ranked(judged, self.floor + self._weight * self.floor_fit)
+        floor = self.floor + self._weight * self.floor_fit
+        return ranked(judged, floor, self.correlated)
+
+    @property
+    def correlated(self) -> float:
+        """What chance gains as a multiple of what it does in independent noise.
+
+        Where what is left lasts from row to row, fewer rows are evidence: so many nats
+        of energy count as one. At least 1. On a floating base recordings differ by
+        chance, so that only gains in both sorts of data count, as they are.
+        """
+        if self.fit.plant.base == "floating":
+            return 1.0
+        independent = gain_of_noise(places_of_effects(self.fit))
+        return max(self.least_gain / independent, 1.0)
 
     @property
     def least_fitted(self) -> float:
@@ -132,7 +146,7 @@ class Judge:
     def worth(self, smaller: Judged, larger: Judged) -> bool:
         """Whether a larger model explains more than effects do by chance."""
         gain = smaller.evidence - larger.evidence
-        least = self.least_gain + self.price(larger.model) - self.price(smaller.model)
+        least = self.least_gain + self._dearer(larger, smaller)
         matters = self._matters(smaller.selected - larger.selected)
         return gain > least and matters
 
@@ -148,8 +162,7 @@ class Judge:
         """
         energy = smaller.selected if smaller else self.nothing
         fitted = smaller.fit.energy if smaller else self.nothing_fit
-        least = self.least_gain + self.price(best.model)
-        least -= self.price(smaller.model if smaller else ())
+        least = self.least_gain + self._dearer(best, smaller)
         gained, selected = fitted - best.fit.energy, energy - best.selected
         is_free = self.fit.plant.base == "floating"
         here = selected > (least if is_free else -CONTRADICTED)
@@ -165,9 +178,16 @@ class Judge:
         That of the best of those compared if noise were independent, times how much
         more correlated noise lets candidates gain on the fitting data.
         """
-        independent = gain_of_noise(places_of_effects(self.fit))
-        correlated = max(self.least_gain / independent, 1.0)
-        return correlated * gain_of_noise(self.rules.finished)
+        return self.correlated * gain_of_noise(self.rules.finished)
+
+    def _dearer(self, larger: Judged, smaller: Judged | None) -> float:
+        """Gain [nats] that a model needs for its values beyond what a smaller one does.
+
+        A nat of a price is a nat of evidence.
+        """
+        dearer = self.price(larger.model)
+        dearer -= self.price(smaller.model if smaller else ())
+        return self.correlated * dearer
 
     def price(self, model: Model) -> float:
         """Gain [nats] that a model needs beyond that of effects with one value each."""

@@ -67,6 +67,8 @@ class SearchResult:
       chosen: the number of effects that are believed.
       most_left: share of the noise's energy by which more may be left and still hardly
         be more than noise.
+      correlated: what chance gains as a multiple of what it does in independent noise;
+        so many nats of energy count as one.
     """
 
     nothing: float
@@ -76,6 +78,7 @@ class SearchResult:
     nothing_fit: float = 0.0
     floor_fit: float = 0.0
     most_left: float = MOST_LEFT
+    correlated: float = 1.0
 
     @property
     def winner(self) -> Judged | None:
@@ -90,7 +93,7 @@ class SearchResult:
         """How much less plausible than the winner an equally large model is [nats]."""
         assert self.winner is not None
         floor = self.floor + self.winner.weight * self.floor_fit
-        scale = scale_of(self.best[self.chosen], floor)
+        scale = scale_of(self.best[self.chosen], floor, self.correlated)
         return plausibility(judged, scale) - plausibility(self.winner, scale)
 
     def closed(self, judged: Judged) -> float:
@@ -129,7 +132,8 @@ def plausibility(judged: Judged, scale: float) -> float:
     """The implausibility of a model [nats]: lower is more plausible.
 
     It is minus the log-likelihood, plus penalties for rare effects and for each value.
-    `scale` divides the log-likelihood: if no model is exact, differences count less.
+    `scale` divides the log-likelihood: if no model is exact, or what is left lasts from
+    row to row, differences count less.
     """
     rarity = sum(effect(placed.name).rarity_nats for placed in judged.model)
     return (
@@ -137,15 +141,25 @@ def plausibility(judged: Judged, scale: float) -> float:
     )
 
 
-def scale_of(judged: Sequence[Judged], floor: float) -> float:
-    """Energy of the best model divided by `floor`, that of the noise, at least 1."""
+def scale_of(judged: Sequence[Judged], floor: float, correlated: float = 1.0) -> float:
+    """Energy [nats] that counts as one nat, at least 1.
+
+    That is the energy of the best model divided by `floor`, that of the noise, or what
+    chance gains as a multiple of that in independent noise (`correlated`), if larger:
+    it grows with the energy, too.
+    """
     least = min((one.evidence for one in judged), default=floor)
-    return max(least / floor, 1.0) if floor > 0 else 1.0
+    return max(least / floor, correlated, 1.0) if floor > 0 else max(correlated, 1.0)
 
 
-def ranked(judged: Sequence[Judged], floor: float) -> list[Judged]:
-    """Models, the most plausible first; `floor` is the noise's energy [nats]."""
-    scale = scale_of(judged, floor)
+def ranked(
+    judged: Sequence[Judged], floor: float, correlated: float = 1.0
+) -> list[Judged]:
+    """Models, the most plausible first; `floor` is the noise's energy [nats].
+
+    So many nats as `correlated` says count as one, see `scale_of`.
+    """
+    scale = scale_of(judged, floor, correlated)
     return sorted(judged, key=lambda one: plausibility(one, scale))
 
 

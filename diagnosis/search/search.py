@@ -90,7 +90,8 @@ class Search:
         # how much recordings differ by is learned of few, to a factor of two or so
         rough = MORE_THAN_NOISE**2 - 1 if self._fit.knows_healthy_torques else MOST_LEFT
         energies = judge.nothing_fit, judge.floor_fit
-        return SearchResult(judge.nothing, judge.floor, best, chosen, *energies, rough)
+        own = *energies, rough, judge.correlated
+        return SearchResult(judge.nothing, judge.floor, best, chosen, *own)
 
     @property
     def _bare(self) -> Predictor:

@@ -3,6 +3,7 @@
 from collections.abc import Iterator, Sequence
 
 from diagnosis import PlacedEffect, Verdict
+from diagnosis.effects import keys_within
 from diagnosis.verdict import Errors, Found, Pulse
 from experiments.diagnosis_report.findings import pulse_sentences
 from experiments.diagnosis_report.numbers import estimate_text, percent, sure_text
@@ -190,15 +191,28 @@ def sane_bounds(robot: RealRobot, effect: str, parameter: str) -> str:
 
 
 def _published(robot: RealRobot, verdict: Verdict) -> Iterator[Claim]:
-    """Yield for each published value the claim that the verdict's interval holds it."""
+    """Yield for each published value the claim that the verdict's interval holds it.
+
+    Of a more general form of the effect it is the part that the form begins with, such
+    as dry friction in the middle of the range of friction that varies over it.
+    """
     for known in robot.published:
-        own = [one.parameters for one in verdict.effects if one.name == known.effect]
+        own = [
+            one.parameters
+            for one in verdict.effects
+            if f"{known.effect}@{one.place}" in keys_within([_valued(one)])
+        ]
         found = next(
             (one[known.parameter] for one in own if known.parameter in one), None
         )
         text = f"{known.text}: the 80 % interval holds the published {known.value:g}"
         holds = found is not None and found.low <= known.value <= found.high
         yield Claim(text, holds, estimate_text(found) if found else "not found")
+
+
+def _valued(found: Found) -> PlacedEffect:
+    values = tuple(one.value for one in found.parameters.values())
+    return PlacedEffect(found.name, found.place, values)
 
 
 def _pulses_claim(count: int, pulses: tuple[Pulse, ...]) -> Claim:

@@ -48,6 +48,18 @@ def test_published_values_are_looked_for_in_the_intervals(found, holds):
     assert (claim.holds, claim.found) == (False, "not found")
 
 
+@pytest.mark.parametrize(("torque_nm", "holds"), [(20.0, True), (25.0, False)])
+def test_what_was_published_may_be_a_part_of_what_is_found(torque_nm, holds):
+    """Dry friction that varies over the range is dry friction in its middle."""
+    dry = Published("coulomb_friction", "torque", 20.4, "dry friction")
+    torque = Estimate(torque_nm, torque_nm - 1, torque_nm + 1, "N m")
+    parameters = {"torque": torque, "factor": Estimate(0.6, 0.5, 0.7, "1/rad")}
+    found = Found("angle_friction", "LKneePitch", parameters, 0.9)
+    robot = replace(ROBOT, published=(dry, KNOWN))
+    claims = claims_of(robot, verdict(effects=(found,)))
+    assert [one.holds for one in claims] == [holds, False]
+
+
 @pytest.mark.parametrize(
     ("pulses", "holds"),
     [

@@ -36,12 +36,27 @@ def likeliest(
     if free.any():
         power = products[np.ix_(free, free)]
         kept = damping * np.diag(power)
-        root = np.linalg.cholesky(power + np.diag(1 + kept))
         wanted = slopes[free] - power @ sizes[free] - kept * sizes[free]
         ends = low[free] - 1e-9, high[free] + 1e-9
-        best = lsq_linear(root.T, -np.linalg.solve(root, wanted), ends).x
+        root, least = _least_squares(power + np.diag(1 + kept), wanted)
+        best = lsq_linear(root, least, ends).x
         found[free] = np.clip(best, low[free], high[free])
     return found
+
+
+def _least_squares(
+    power: FloatArray, slopes: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """(k, k) A and (k,) b with which |A x - b|^2 / 2 is x power x / 2 + slopes x.
+
+    But for a constant. Products of 1e13 are rounded by more than 1, so that `power`
+    (k, k) may seem to have a direction in which it falls: there it is level.
+    """
+    unit = 1 / np.sqrt(np.diag(power))
+    squares, axes = np.linalg.eigh(power * unit * unit[:, None])
+    roots = np.sqrt(np.maximum(squares, len(unit) * np.finfo(float).eps * squares[-1]))
+    root = roots[:, None] * axes.T / unit
+    return root, -(axes.T @ (unit * slopes)) / roots
 
 
 def gain_of(

@@ -54,6 +54,20 @@ def test_damping_holds_sizes_back_by_how_much_they_change():
     assert found == pytest.approx(begun, abs=1e-4)
 
 
+def test_products_so_large_that_they_are_rounded():
+    """Errors that change the same, 1e8 noise each: rounding outdoes what holds them."""
+    rng = np.random.default_rng(1)
+    same = 1e8 * rng.standard_normal(50)
+    changes = np.stack([same, 1.1 * same, 1.3 * same, 1e8 * rng.standard_normal(50)])
+    left = -(2 * same + 3 * changes[3])
+    known = np.zeros(4), np.ones(4, bool), np.full(4, -9.0), np.full(4, 9.0)
+    with pytest.raises(np.linalg.LinAlgError):
+        np.linalg.cholesky(changes @ changes.T + np.eye(4))
+    found = likely(changes, left, *known)
+    assert found @ [1.0, 1.1, 1.3, 0.0] == pytest.approx(2.0, rel=1e-4)
+    assert found[3] == pytest.approx(3.0, rel=1e-4)
+
+
 def test_a_gain_is_the_energy_that_falls():
     rng = np.random.default_rng(3)
     changes, sizes = rng.standard_normal((3, 40)), np.array([3.0, 0.5, 1.0])
