@@ -193,7 +193,9 @@ def convert(config: Convert) -> dict[Path, Recording]:
       GroundwalkError: a source cannot be read, is ambiguous, or a file exists already;
         nothing is written then.
     """
-    found = list(chain.from_iterable(_read(config, one) for one in config.every_source))
+    shown: set[tuple[object, ...]] = set()
+    every = (_read(config, one, shown) for one in config.every_source)
+    found = list(chain.from_iterable(every))
     named = [one.renamed(config.new_names) for one in found]
     recordings = dict(
         zip(
@@ -208,8 +210,13 @@ def convert(config: Convert) -> dict[Path, Recording]:
     return recordings
 
 
-def _read(config: Convert, source: Path) -> list[ForeignRecording]:
-    """The recordings in a source, without joints that are not wanted."""
+def _read(
+    config: Convert, source: Path, shown: set[tuple[object, ...]]
+) -> list[ForeignRecording]:
+    """The recordings in a source, without joints that are not wanted.
+
+    Guesses that were `shown` for another source are not shown again.
+    """
     kind, joints, without = kind_of(source), _flat(config.joints), _flat(config.without)
     if kind == "lerobot":
         options = LeRobotOptions(_flat(config.unit), config.calibration, without)
@@ -218,7 +225,7 @@ def _read(config: Convert, source: Path) -> list[ForeignRecording]:
         topics = (config.state_topic, config.command_topic, config.effort_topic)
         found = [read_bag(source, BagOptions(*topics, joints, config.clock))]
     elif kind == "table":
-        found = [_from_table(config, read_table(source))]
+        found = [_from_table(config, read_table(source), shown)]
     else:
         found = read_bam(source) if kind == "bam" else [read_pace(source)]
     if joints and kind != "bag":  # there they are those of a topic without names
@@ -226,11 +233,16 @@ def _read(config: Convert, source: Path) -> list[ForeignRecording]:
     return [one.without(without) for one in found]
 
 
-def _from_table(config: Convert, table: ForeignTable) -> ForeignRecording:
+def _from_table(
+    config: Convert, table: ForeignTable, shown: set[tuple[object, ...]]
+) -> ForeignRecording:
     """The recording in a table, after the user has seen what was guessed."""
     entries = plan(table, _flat(config.map))
     if any(one.guessed for one in entries):
-        _show(table, entries)
+        same = *entries, *unused(table, entries)
+        if same not in shown:
+            _show(table, entries)
+        shown.add(same)
         if not config.yes:
             raise ForeignFileError(
                 f"{table.path}: nothing is written, as this was guessed: take it with "

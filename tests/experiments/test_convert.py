@@ -123,6 +123,16 @@ def test_a_folder_of_tables_is_read_file_by_file(log, tmp_path):
         Convert((tmp_path / "empty",), tmp_path / "other")
 
 
+@pytest.mark.parametrize(("third", "times"), [(LOG, 1), (LOG.replace("heat", "h"), 2)])
+def test_the_same_guesses_are_shown_once(log, tmp_path, capsys, third, times):
+    folder = tmp_path / "logs"
+    folder.mkdir()
+    for name, text in (("a.csv", LOG), ("b.csv", LOG), ("c.csv", third)):
+        (folder / name).write_text(text)
+    convert(Convert((folder,), tmp_path / "new", yes=True))
+    assert capsys.readouterr().out.count("known from") == times
+
+
 @pytest.mark.parametrize(
     ("options", "words"),
     [
