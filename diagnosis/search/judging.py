@@ -91,21 +91,16 @@ class Judge:
         self.nothing_fit = 0.5 * float(self.residual @ self.residual)
         self.nothing = self.energies([()])[0]
 
-    def calibrate(self, model: Model, together: bool = False) -> Model:
+    def calibrate(self, model: Model) -> None:
         """Calibrate the predictors at a model, and judge the nominal sim anew.
 
-        Small mismatch is that of the fitting data. With `together` the model's values
-        are fitted with it, and the model with these is returned, else the given one.
-        What was judged before is to be judged `again`.
+        Small mismatch is that of the fitting data. What was judged before is to be
+        judged `again`.
         """
-        if together:
-            model = self.fit.calibrate_with(model)
-        else:
-            self.fit.calibrate(model)
+        self.fit.calibrate(model)
         self.select.doubt_beside(self.fit.nuisance, model)
         self.select.correct(model)
         self._see_nominal()
-        return model
 
     def again(self, judged: Sequence[Judged]) -> list[Judged]:
         """Models that were judged before, with the same values, judged again."""

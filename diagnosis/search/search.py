@@ -192,57 +192,24 @@ class Search:
 
         Dry friction and end stops change it. More general forms of the best model's
         effects are fitted as well, and those at the next bodies: beside a load at the
-        wrong one small mismatch does not lead to the noise. It goes on as long as more
-        is gained than by chance.
+        wrong one small mismatch does not lead to the noise. Values and small mismatch
+        beside them are fitted in turn, as long as more is gained than by chance.
         """
         judge = self.judge
         for _ in range(self._rules.refinements):
             before = best[0]
-            found, tried = self._beside(judge.calibrate(before.model), best)
-            if found[0].energy > before.energy + judge.least_gain:
-                found, tried = self._together(before, best, found, tried)
-            best = found
+            judge.calibrate(before.model)
+            first = best[: self._rules.beam]
+            others = judge.again(best[self._rules.beam :])
+            wider = [*grown(self._fit, before.model), *moved(self._fit, before.model)]
+            models = [*(judged.model for judged in first), *wider]
+            known = [None, *(judged.fit.jacobian for judged in first[1:])]
+            tried = judge.judged(models, [*known, *(None for _ in wider)])
+            best = distinct(judge.ranked([*tried, *others]))
             same = best[0].keys == before.keys or best[0] not in tried
             if same and best[0].energy > before.energy - judge.least_gain:
                 break
         return best
-
-    def _beside(
-        self, model: Model, best: Sequence[Judged]
-    ) -> tuple[list[Judged], list[Judged]]:
-        """The best models, of which the first is `model` now, judged anew.
-
-        The predictors have just been calibrated at that one. Those that were fitted
-        again are also returned by themselves.
-        """
-        judge, beam = self.judge, self._rules.beam
-        others = judge.again(best[beam:])
-        wider = [*grown(self._fit, model), *moved(self._fit, model)]
-        models = [model, *(judged.model for judged in best[1:beam]), *wider]
-        known = [None, *(judged.fit.jacobian for judged in best[1:beam])]
-        tried = judge.judged(models, [*known, *(None for _ in wider)])
-        return distinct(judge.ranked([*tried, *others])), tried
-
-    def _together(
-        self,
-        before: Judged,
-        best: Sequence[Judged],
-        found: list[Judged],
-        tried: list[Judged],
-    ) -> tuple[list[Judged], list[Judged]]:
-        """Those `found` and `tried`, or better ones beside other small mismatch.
-
-        That was fitted beside values that were held. A dead band and the friction
-        beside it may end where neither can move alone: they are fitted together.
-        """
-        judge = self.judge
-        if not self._fit.fits_nuisance:
-            return found, tried
-        own = self._beside(judge.calibrate(before.model, together=True), best)
-        if own[0][0].energy < found[0].energy - judge.least_gain:
-            return own
-        judge.calibrate(before.model)
-        return found, tried
 
 
 def _by_chance(starts: Candidates, best: Judged) -> float:

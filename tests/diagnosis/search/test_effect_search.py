@@ -315,39 +315,6 @@ def test_chance_says_how_many_nats_count_as_one():
         assert enough == (factor == 1.0)
 
 
-@pytest.mark.parametrize(
-    ("alone", "together", "calls"),
-    [
-        (90.0, 0.0, [False]),  # better than before: nothing else is tried
-        (150.0, 120.0, [False, True]),
-        (150.0, 148.0, [False, True, False]),  # hardly better: as it was
-    ],
-)
-def test_what_fits_worse_beside_small_mismatch_is_fitted_with_it(
-    monkeypatch, alone, together, calls
-):
-    """Before it left 100 nats; by chance 5 are gained."""
-    before, asked = judged(PLANT, 100.0, "servo_gain@elbow"), []
-    own = {False: alone, True: together}
-
-    def calibrate(model, together=False):
-        asked.append(together)
-        return model
-
-    def beside(search, model, best):
-        found = [judged(PLANT, own[asked[-1]], "servo_gain@elbow")]
-        return found, found
-
-    search = copy(searched()[0])
-    search.judge = SimpleNamespace(calibrate=calibrate, least_gain=5.0)
-    search._fit = SimpleNamespace(fits_nuisance=True)
-    search._rules = replace(LEAN, refinements=1)
-    monkeypatch.setattr(Search, "_beside", beside)
-    (best,) = search._refined([before])
-    assert asked == calls
-    assert best.selected == (together if calls == [False, True] else alone)
-
-
 def test_on_a_floating_base_only_the_selection_data_are():
     search = searched()[0].judge
     fit = judged(PLANT, 0.0, "armature@elbow").fit
