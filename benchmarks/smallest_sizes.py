@@ -27,6 +27,7 @@ from diagnosis.check import check
 from diagnosis.check.result import Size
 from diagnosis.conclude.effect_sizes import scaled
 from diagnosis.effects import PlacedEffect, effect
+from diagnosis.effects.controllers import ON_S
 from diagnosis.traces.read import trace_of
 from diagnosis.verdict import Verdict
 from experiments.command_line import run_script
@@ -45,9 +46,6 @@ from worlds.recordings.metadata import RecordingMetadata
 
 ROBOTS = ("two_dof", "double_pendulum", "a1_leg")
 RATE_HZ, DURATION_S, BEFORE_S = 100.0, 4.0, 0.5
-ON_S = 60.0
-"""Time before a recording [s] for which a robot has been on whose servos integrate:
-what `check` and the diagnosis take of all robots, and what only these remember."""
 STEP_S = 0.0005
 """Physics step of the hidden world [s]."""
 SHARES = (2.0, 0.5)
@@ -97,6 +95,7 @@ class Case:
         robot = self.motion.plant.with_masses(mismatch.extra_kg)
         start_rad, feed = self.motion.feed(number)
         every, nobody = (*mismatch.effects, *effects), np.random.SeedSequence(0)
+        # only servos that integrate remember for how long they have been on
         remembers = any(one.name == "integral_term" for one in effects)
         held_s = ON_S if remembers else 0.0
         ticks = round(held_s * RATE_HZ)

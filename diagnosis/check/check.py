@@ -161,11 +161,10 @@ def _alike(
     """
     found: dict[frozenset[str], Alike] = {}
     for key, one in sizes.items():
-        placed = one.placed
-        for twin in effect(placed.name).twins(plant, placed.place):
-            if one.told is not None:
-                pair = frozenset((key, twin.key))
-                found.setdefault(pair, Alike(key, twin.key, TWINS))
+        twins = effect(one.placed.name).twins(plant, one.placed.place)
+        for twin in twins if one.told is not None else ():
+            pair = frozenset((key, twin.key))
+            found.setdefault(pair, Alike(key, twin.key, TWINS))
         if one.nearest is None or one.seen is None or not _is_lost(one):
             continue
         if {one.placed.place, one.nearest.place} & (set(plant.joints) - moving):

@@ -17,10 +17,13 @@ from diagnosis.traces.trace import Trace
 from diagnosis.traces.usage import Usage
 from groundwalk.arrays import FloatArray
 
-SETTLED_S = 20.0
-"""Integral time [s] at which an integral has gathered 95 % of what it will hold within
-the minute for which robots have been on (`replay.controllers.ON_S`). Where it begins
-with a longer time, nobody knows."""
+ON_S = 60.0
+"""Time [s] for which a robot has been switched on, as a rule, when a recording begins.
+An integral of a longer time has gathered only a part of what it will hold."""
+
+SETTLED_S = ON_S / 3
+"""Integral time [s] at which an integral has gathered 95 % of what it will hold. Where
+it begins with a longer time, nobody knows."""
 
 BAND_SHARES = (0.1, 0.4)
 """Dead bands that are tried first, as shares of the error at which the servo gives the

@@ -11,16 +11,13 @@ from typing import Any
 import mujoco
 import numpy as np
 
+from diagnosis.effects.controllers import ON_S
 from diagnosis.effects.parts import SIGN_SPEED_RAD_S
 from diagnosis.replay.transmission import LEAST_KP
 from groundwalk.arrays import FloatArray
 
 CONTROLLED = "integral_1_s", "dead_band_rad", "rate_share"
 """Attributes of `Joints` that are 0 where a servo only has stiffness and damping."""
-
-ON_S = 60.0
-"""Time [s] for which a robot has been switched on, as a rule, when a recording begins.
-An integral of a longer time has gathered only a part of what it will hold."""
 
 DERIVATIVE_LAGS = 10.0
 """The lag of a set-point's rate is kd / kp over this number. Usual are 2 to 20 (Astrom

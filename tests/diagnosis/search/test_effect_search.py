@@ -12,13 +12,12 @@ from made_up_search import judged
 from made_up_traces import arm, recorded
 
 from diagnosis.conclude.smallest_sizes import smallest_detectable
-from diagnosis.effects.library import effect
 from diagnosis.effects.parts import PlacedEffect
 from diagnosis.residuals.predictor import Predictor
 from diagnosis.residuals.small_mismatch.usual_errors import is_usual
 from diagnosis.search.accept import accepted
-from diagnosis.search.judging import Judge, gain_of_noise, places_of_effects, price
-from diagnosis.search.result import VALUE_NATS, SearchResult, ranked
+from diagnosis.search.judging import Judge
+from diagnosis.search.result import SearchResult, ranked
 from diagnosis.search.search import Search
 from diagnosis.traces.usage import Usage
 
@@ -284,35 +283,6 @@ def test_what_was_fitted_is_evidence_of_names_too(weight, first):
     found = SearchResult(400.0, 100.0, {1: best}, 1, nothing_fit=800.0, floor_fit=200.0)
     gap = {0.0: 3.0, 1.0: 47.0}[weight]
     assert found.worse(best[1]) == pytest.approx(gap)
-
-
-@pytest.mark.parametrize("correlated", [1.0, 5.0, 10.0])
-def test_where_errors_last_more_values_must_gain_more(correlated):
-    """Inertia has one value, a push three and a time, but 30 nats more of energy."""
-    push = judged(PLANT, 100.0, "external_force@upper")
-    inertia = judged(PLANT, 130.0, "armature@elbow")
-    best = ranked([push, inertia], 100.0, correlated)
-    dearer = VALUE_NATS * 4 + effect("external_force").rarity_nats
-    wins = 30 / correlated > dearer
-    assert best[0] is (push if wins else inertia)
-    found = SearchResult(400.0, 100.0, {1: best}, 1, correlated=correlated)
-    assert found.worse(best[1]) == pytest.approx(abs(30 / correlated - dearer))
-    assert wins == (correlated == 1.0)
-
-
-def test_chance_says_how_many_nats_count_as_one():
-    judge = copy(searched()[0].judge)
-    independent = gain_of_noise(places_of_effects(judge.fit))
-    models = [judged(PLANT, 50.0, "armature@elbow")]
-    models += [judged(PLANT, 20.0, "external_force@upper")]
-    rows = sum(trace.ticks for trace in judge.fit.traces)
-    dearer = price(models[1].model, rows) - price(models[0].model, rows)
-    for factor, least in ((1.0, 0.5 * independent), (3.0, 3 * independent)):
-        judge.least_gain = least
-        assert judge.correlated == pytest.approx(factor)
-        enough = least + factor * dearer < 30
-        assert judge.worth(*models) == enough
-        assert enough == (factor == 1.0)
 
 
 def test_on_a_floating_base_only_the_selection_data_are():
